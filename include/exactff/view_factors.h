@@ -38,9 +38,9 @@ enum class Way {
   // difference of two Gauss rules, or, closer to an edge than 1.5 radii of the cell, the cell's whole area. Where the
   // order of edges could not be decided on a cell (event cells), a bound is added.
   kCells,
-  // In a crowd, where cells do not suffice: the mean of exact point factors over at least 36 strata of the patch, two
-  // independent draws in each. The interval assumes nothing of the point factor but its largest value, which distance
-  // and slope bound.
+  // In a crowd, where cells would cost more: the mean of exact point factors over at least 100 strata of a patch, two
+  // independent points in each. The interval assumes nothing of the point factor but its largest value: that of an
+  // unhidden source.
   kPoints,
   kViews,  // The same from whole views, which serve a row (matrix::draft).
 };
@@ -49,8 +49,8 @@ enum class Way {
 struct ViewFactorOptions {
   // Of F_ij and of F_ji: upper - lower is at most this. At the same budget, a smaller one never yields more.
   double accuracy = 1e-6;
-  std::size_t budget = 100000;  // cells, one with many edges counts for several; if they do not suffice, it is a crowd
-  bool sample_crowds = true;    // take points in a crowd if they give a narrower interval; else the width is kept
+  std::size_t budget = 100000;  // the most cells, where one with many edges counts for several, and the most points
+  bool sample_crowds = true;    // take points where they are expected to cost less than cells
   // Compute F_ij and F_ji apart, each by cells of its own patch, so that each tests the other. Otherwise, if all faces
   // are planar, one of them is computed, whichever is asked for, by cells of whichever patch seems to need fewer, and
   // A_i F_ij = A_j F_ji gives the other.

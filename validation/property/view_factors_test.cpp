@@ -174,22 +174,25 @@ TEST(ViewFactors, CertifiedHoldBetterEstimates) {
   EXPECT_GE(judged, 5U);
 }
 
-// At the same limit of cells, whether or not they suffice.
+// At the same limit of cells and points, whether or not they suffice. The largest one allows pauses and several looks.
 TEST(ViewFactors, ASmallerAccuracyNeverWidensThem) {
-  std::size_t limited = 0;
+  constexpr std::array<std::size_t, 4> kBudgets{40, 400, 400, 3000};
+  std::size_t limited = 0, by_points = 0;
   for_each_random_pair(30, [&](std::uint64_t s, const Scene& scene, const Selection& from, const Selection& to) {
     for (const bool certify : {false, true}) {
       double width = 1.0;
       for (const double accuracy : {0.3, 2e-2, 1.5e-2, 1e-3, 7e-5, 6e-5, 1e-8}) {
         const ViewFactor f =
-            view_factor(scene, from, to, {.accuracy = accuracy, .budget = s % 3 == 0 ? 40U : 400U, .certify = certify});
+            view_factor(scene, from, to, {.accuracy = accuracy, .budget = kBudgets[s % 4], .certify = certify});
         EXPECT_LE(f.upper - f.lower, width) << s << ' ' << scene.name_of(from) << ' ' << accuracy;
         width = f.upper - f.lower;
         limited += f.accurate ? 0 : 1;
+        by_points += f.way == Way::kPoints ? 1 : 0;
       }
     }
   });
   EXPECT_GE(limited, 5U);
+  EXPECT_GE(by_points, 5U);
 }
 
 void expect_equal_factors(const ViewFactor& a, const ViewFactor& b, const std::string& where) {
@@ -231,12 +234,13 @@ TEST(ViewFactors, DependOnTheirPairAlone) {
   EXPECT_GE(positive, 20U);
 }
 
-// With a single cell every pair is a crowd. Its interval is judged by the cells of a larger budget.
+// With a single cell every pair is a crowd, and there is one look; with more, there are several. The interval is judged
+// by the cells of a larger budget.
 TEST(ViewFactors, OfCrowdsHoldTheFactor) {
   std::size_t judged = 0;
   for_each_random_pair(60, [&](std::uint64_t s, const Scene& scene, const Selection& from, const Selection& to) {
     const ViewFactor truth = view_factor(scene, from, to, {.accuracy = 1e-4, .budget = 1000, .sample_crowds = false});
-    const ViewFactor f = view_factor(scene, from, to, {.accuracy = 1e-9, .budget = 1});
+    const ViewFactor f = view_factor(scene, from, to, {.accuracy = 1e-9, .budget = s % 3 == 0 ? 2000U : 1U});
     if (f.way != Way::kPoints) return;
     EXPECT_LE(f.lower, truth.upper) << s << ' ' << scene.name_of(from);
     EXPECT_GE(f.upper, truth.lower) << s << ' ' << scene.name_of(from);

@@ -39,8 +39,8 @@ constexpr const char* kMatrixFooter =
     "form factor from a point to j. Its interval is proved or estimated. 'zero' is proved. 'estimated' says that the\n"
     "error is an estimate, with all roundings in it: by cells, on each of which what is seen is proved, from two "
     "rules\n"
-    "of quadrature; or, where the cells of --budget do not suffice and if that is narrower, by points, from the exact\n"
-    "form factors of random points, but with a probability of 1e-6. A warning counts the entries that are wider than\n"
+    "of quadrature; or, where so much lies between that this costs less, by points, from the exact form factors of\n"
+    "random points, but with a probability of 1e-6. A warning counts the entries that are wider than\n"
     "the accuracy.\n"
     "With --claim certified, or --certify, every entry is 'zero' or 'certified': the remainder of the quadrature and\n"
     "all roundings are proved as well. It costs up to a few times as much.\n"
@@ -456,7 +456,8 @@ Command add_matrix(CLI::App& app) {
                                            "Largest width of an entry, for F_ij and for F_ji; 1e-3 with --draft")
                               ->capture_default_str();
   CLI::Option* budget =
-      command->add_option("--budget", args->options.factors.budget, "Largest number of cells for an entry")
+      command
+          ->add_option("--budget", args->options.factors.budget, "Largest number of cells, and of points, for an entry")
           ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
           ->capture_default_str();
   const ClaimOptions claims = add_claim(*command, args->options.factors.certify);

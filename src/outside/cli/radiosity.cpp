@@ -347,7 +347,7 @@ Command add_radiosity(CLI::App& app) {
   command->add_option("--two-sided", args->two_sided, kTwoSidedHelp)->type_name("NAME");
   command->add_option("--accuracy", args->factors.accuracy, "Largest width of a view factor, for F_ij and for F_ji")
       ->capture_default_str();
-  command->add_option("--budget", args->factors.budget, "Largest number of cells for a view factor")
+  command->add_option("--budget", args->factors.budget, "Largest number of cells, and of points, for a view factor")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
       ->capture_default_str();
   add_claim(*command, args->factors.certify);

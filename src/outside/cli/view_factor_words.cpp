@@ -55,8 +55,9 @@ ClaimOptions add_claim(CLI::App& command, bool& certify) {
 }
 
 void warn_of_width(const matrix::Matrix& matrix, const ViewFactorOptions& options) {
-  warn_of_width(matrix, options.accuracy, "the budget of " + std::to_string(options.budget) + " cells is used up",
-                "give more cells by --budget");
+  warn_of_width(matrix, options.accuracy,
+                "the budget of " + std::to_string(options.budget) + " cells, or points, is used up",
+                "give more by --budget");
 }
 
 void warn_of_width(const matrix::Matrix& draft, const matrix::DraftOptions& options) {

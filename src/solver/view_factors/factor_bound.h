@@ -1,4 +1,6 @@
-// An upper bound of form factors, by distance and slope alone.
+// Upper bounds of form factors, whatever hides the source.
+//
+// By distance and slope alone.
 //
 // F(x -> j) is at most the integral of cos cos / (pi r^2) over j. Let no point of the source be nearer to the cell than
 // d, none higher above the receiver's plane than h, and no point of the cell higher above the source's plane than k.
@@ -8,9 +10,22 @@
 //
 // from every point of the cell. Coordinates are at most 1 and rounded once, so the distance of two boxes, a height and
 // an area are computed to within 2^-46; each is moved by kAside to the safe side.
+//
+// By the factor F0 of the whole source, where nothing hides it. Seen from points of the receiver's plane, the part of
+// the source in front of this plane is always the same polygon, and F0 is Eq. (4) on its edges, or 0 from behind. As x
+// moves, the visible directions change only where an edge sweeps over them, so F0 changes by at most 1 / pi times the
+// sum, over the edges, of their angle over their distance. So with r the largest distance of the cell's corners from a
+// point c, and for edges at least as far from c as d > r, of length l,
+//
+//   F <= F0(x) <= F0(c) + r / pi * sum of min(pi, l / (d - r)) / (d - r).
+//
+// It is used where d - r > 2^-10. Coordinates are rounded once, or where the receiver's plane cuts an edge, within
+// 2^-44 in the direction of this edge; that turns edges as seen from c by less than 2^-33 each, and the formula's own
+// roundings are less. kAsideOpen is more than all of them.
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "view_factors/cell.h"
 #include "view_factors/exact_scene.h"
@@ -33,6 +48,22 @@ class FactorBound {
   Plane source_plane_;
   Box source_;
   double area_ = 0.0, height_ = 0.0;  // of the source; above the receiver's plane
+};
+
+class OpenFactorBound {
+ public:
+  // Of the convex source, counter-clockwise as seen from its front, for points in the receiver's plane.
+  OpenFactorBound(std::span<const Vec3> source, const Plane& receiver);
+
+  // At least F(x -> j) for every point x of the convex hull of corners in the receiver's plane; at most 1.
+  [[nodiscard]] double on(std::span<const Vec3> corners) const;
+
+ private:
+  [[nodiscard]] double factor_at(const Vec3& x) const;
+  [[nodiscard]] double slope(const Vec3& x, double radius) const;
+
+  std::vector<Vec3> source_;  // the part in front of the receiver's plane
+  Vec3 normal_;               // of the receiver; of length 1
 };
 
 }  // namespace exactff::view_factors

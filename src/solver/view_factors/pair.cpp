@@ -134,8 +134,8 @@ std::size_t Pair::events() {
   return view_.count_events(sight_.root, candidates);
 }
 
-std::vector<Share> Pair::cells(double enough, std::size_t budget) {
-  budget_ = cost() + budget;
+std::vector<Share> Pair::cells(double enough, const Budget& budget) {
+  budget_ = {cost() + budget.cost, effort() + budget.effort};
   std::vector<Share> shares;
   view_.start();
   look(sight_.root, 0, view_.all_candidates(), enough, shares);
@@ -196,7 +196,10 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enou
   if (0.5 * largest_integral(cell) <= enough) {
     return add_dark(std::move(cell), std::move(candidates), view_.way(depth), view_.best_cut(), shares);
   }
-  if (cost() >= budget_) return add_event(std::move(cell), depth, std::move(candidates), {}, shares);
+  if (effort() >= budget_.effort) {
+    return add_dark(std::move(cell), std::move(candidates), view_.way(depth), view_.best_cut(), shares);
+  }
+  if (cost() >= budget_.cost) return add_event(std::move(cell), depth, std::move(candidates), {}, shares);
   Halves halves = cut(cell, sight_.receiver, view_.best_cut(), sight_.points.units());
   look(std::move(halves.negative), depth + 1, candidates, enough, shares);
   look(std::move(halves.positive), depth + 1, std::move(candidates), enough, shares);
@@ -377,11 +380,17 @@ bool Pair::improve_whole(Share& share) {
   return true;
 }
 
-std::vector<Share> Pair::improve(Share share, std::size_t budget) {
-  budget_ = cost() + budget;
+std::vector<Share> Pair::improve(Share share, const Budget& budget) {
+  budget_ = {cost() + budget.cost, effort() + budget.effort};
   std::vector<Share> result;
   if (improve_whole(share)) {
     result.push_back(std::move(share));
+    return result;
+  }
+  const double enough = kShareOfParent * share.error;
+  if (share.formula == nullptr && share.way.empty()) {
+    view_.start();
+    look(std::move(share.cell), 0, std::move(share.candidates), enough, result);
     return result;
   }
   const Units& units = sight_.points.units();
@@ -392,14 +401,13 @@ std::vector<Share> Pair::improve(Share share, std::size_t budget) {
     return result;
   }
   Halves parts = cut(share.cell, sight_.receiver, by, units);
-  const double enough = kShareOfParent * share.error;
   if (share.formula != nullptr) {
     cells_made_ += 2;
     add_smooth(std::move(parts.negative), share.formula, enough, result);
     add_smooth(std::move(parts.positive), share.formula, enough, result);
   } else {
-    const std::size_t depth = std::max(share.way.size(), std::size_t{1});
-    share.way.empty() ? view_.start() : view_.resume(std::move(share.way));
+    const std::size_t depth = share.way.size();
+    view_.resume(std::move(share.way));
     look(std::move(parts.negative), depth, share.candidates, enough, result);
     look(std::move(parts.positive), depth, std::move(share.candidates), enough, result);
   }

@@ -48,6 +48,7 @@ struct Share {
 
 class Pair {
  public:
+  static constexpr std::uint64_t kEffortOfCell = 2048;
   struct Limits {
     std::size_t stage = 0;         // their number
     double rounding = 0.0;         // larger bounds of the rounding error of F ask for balls; at most 2^-6
@@ -69,18 +70,27 @@ class Pair {
 
   // For what is called from now on.
   void set_limits(const Limits& limits) { limits_ = limits; }
+  // Of a call. When the cost is used up, the cells that are left are estimated as well as can be; when the effort is,
+  // they wait as they are.
+  struct Budget {
+    std::size_t cost = 0;
+    std::uint64_t effort = 0;
+  };
   // Cuts the receiver until every cell is smooth, an event cell, has an error of at most `enough`, or sees nothing; the
-  // last are left out. Gives up when the cost of the call reaches the budget.
-  [[nodiscard]] std::vector<Share> cells(double enough, std::size_t budget);
+  // last are left out.
+  [[nodiscard]] std::vector<Share> cells(double enough, const Budget& budget);
   // The receiver as one cell of which only bounds are known.
   [[nodiscard]] std::vector<Share> without_cells() const;
-  // The cell by a better rule or, cut in two, its halves, without parts that see nothing.
-  [[nodiscard]] std::vector<Share> improve(Share share, std::size_t budget);
+  // The cell by a better rule or, cut in two, its halves, without parts that see nothing. A cell that has not been
+  // looked at is cut as cells() does.
+  [[nodiscard]] std::vector<Share> improve(Share share, const Budget& budget);
   // Of the share's integral. It lies within the error, but a point of the cell may tell more than the middle does.
   [[nodiscard]] double estimate(const Share& share) const;
   [[nodiscard]] std::size_t cells_made() const { return cells_made_; }
   // In cells; one that asks for very many signs counts for several.
   [[nodiscard]] std::size_t cost() const { return cells_made_ + extra_cost_; }
+  // About as many times a few nanoseconds, from what has been done.
+  [[nodiscard]] std::uint64_t effort() const { return view_.work() + kEffortOfCell * cells_made_; }
 
  private:
   CellView::Outcome view(const Cell& cell, std::size_t depth, Candidates& candidates);
@@ -132,7 +142,8 @@ class Pair {
   Limits limits_;
   FactorBound bound_;
   CellView view_;
-  std::size_t cells_made_ = 0, extra_cost_ = 0, budget_ = 0;
+  std::size_t cells_made_ = 0, extra_cost_ = 0;
+  Budget budget_;  // of all calls so far and this one
 };
 
 }  // namespace exactff::view_factors

@@ -11,7 +11,9 @@ namespace exactff::view_factors {
 namespace {
 
 // What is below 2^-14 decides nothing between few and many cells. A stage's limits are those of its accuracy.
-constexpr int kFirstStage = -10, kStep = -10;              // exponents of the stages' accuracies
+constexpr int kFirstStage = -10, kStep = -10;  // exponents of the stages' accuracies
+constexpr std::uint64_t kFirstPause = std::uint64_t{1} << 20, kNoPause = std::uint64_t{1} << 62;
+constexpr double kLeastAccuracy = 0x1p-50;                 // of a stage
 constexpr double kShareOfRounding = 0x1p-4;                // of the accuracy
 constexpr double kShareOfNegligible = 0x1p-24;             // of the error that is allowed
 constexpr double kShareOfQuadrature = 0.0625;              // the same, of a cell as large as the patch
@@ -27,6 +29,7 @@ Refinement::Refinement(const ExactScene& scene, const SeenParts& seen, const Pre
     : from_(from),
       to_(to),
       options_(options),
+      pause_(pauses() ? kFirstPause : kNoPause),
       smaller_area_(std::min(from.unit_area, to.unit_area)),
       least_error_(0.5 * options.accuracy * smaller_area_ / (4.0 * static_cast<double>(options.budget))),
       narrowest_(widened(0.5 * from.enclosed_area, 0.5 * magnitude(from.enclosed_area))) {
@@ -56,9 +59,9 @@ void Refinement::add_pair(std::unique_ptr<Pair> pair) {
   pair->set_limits(limits());
   pairs_.push_back(std::move(pair));
   const std::size_t made = made_;
-  const std::size_t left = options_.budget - std::min(cost_, options_.budget);
+  const Pair::Budget left = budget_left();
   work_on(pairs_.size() - 1,
-          [&](Pair& p) { return left > 0 ? p.cells(kCoarse * smaller_area_, left) : p.without_cells(); });
+          [&](Pair& p) { return may_work() ? p.cells(kCoarse * smaller_area_, left) : p.without_cells(); });
   if (made_ == made) pairs_.back().reset();
 }
 
@@ -68,6 +71,10 @@ void Refinement::give_up() {
   settled_.clear();
   pairs_.clear();
   gave_up_ = true;
+}
+
+Pair::Budget Refinement::budget_left() const {
+  return {.cost = options_.budget - std::min(cost_, options_.budget), .effort = pause_ - std::min(effort_, pause_)};
 }
 
 double Refinement::accuracy_of_stage() const { return std::ldexp(1.0, kFirstStage + kStep * static_cast<int>(stage_)); }
@@ -89,9 +96,16 @@ void Refinement::refine(const std::function<bool(const kernel::Disc&)>& is_enoug
   while (!is_enough(narrowest_) && (improve_some() || start_next_stage())) narrow();
 }
 
-// False if the accuracy that is asked for is none of a later stage.
+bool Refinement::go_on() {
+  if (effort_ < pause_ || cost_ >= options_.budget) return false;
+  pause_ *= 2;
+  return true;
+}
+
+// False if the accuracy that is asked for is none of a later stage. With pauses, it must not decide what is done next.
 bool Refinement::start_next_stage() {
-  if (gave_up_ || accuracy_of_stage() < options_.accuracy || cost_ >= options_.budget) return false;
+  const double least = pauses() ? kLeastAccuracy : options_.accuracy;
+  if (gave_up_ || accuracy_of_stage() < least || !may_work()) return false;
   ++stage_;
   for (const std::unique_ptr<Pair>& pair : pairs_) {
     if (pair != nullptr) pair->set_limits(limits());
@@ -108,7 +122,7 @@ bool Refinement::start_next_stage() {
 bool Refinement::improve_some() {
   const std::size_t most = 1 + (waiting_.size() + settled_.size()) / kSharesOfARound;
   std::size_t improved = 0;
-  while (improved < most && !waiting_.empty() && cost_ < options_.budget && running_error_ > target_of_stage() &&
+  while (improved < most && !waiting_.empty() && may_work() && running_error_ > target_of_stage() &&
          waiting_.front().share.error >= least_error_) {
     improve_worst();
     ++improved;
@@ -121,7 +135,7 @@ void Refinement::improve_worst() {
   Waiting worst = std::move(waiting_.back());
   waiting_.pop_back();
   running_error_ -= worst.share.error;
-  const std::size_t left = options_.budget - cost_;
+  const Pair::Budget left = budget_left();
   work_on(worst.pair, [&](Pair& pair) { return pair.improve(std::move(worst.share), left); });
 }
 
@@ -130,9 +144,11 @@ template <class Call>
 void Refinement::work_on(std::size_t id, const Call& call) {
   Pair& pair = *pairs_[id];
   const std::size_t cells = pair.cells_made(), cost = pair.cost();
+  const std::uint64_t effort = pair.effort();
   for (Share& share : call(pair)) add(std::move(share), id);
   cells_ += pair.cells_made() - cells;
   cost_ += pair.cost() - cost;
+  effort_ += pair.effort() - effort;
 }
 
 // No more than 4 * budget shares are ever made, so the worst of them has an error of at least least_error_ while they

@@ -13,6 +13,9 @@
 // decides when it is enough. Limits that must be small if the accuracy is small belong to stages, which follow one
 // another. So a smaller accuracy goes on where a larger one stopped, and since the narrowest interval so far is the
 // result, it never yields a wider one.
+//
+// Where points may be cheaper, the refinement pauses, also within step 1: whenever it has done twice as much
+// (view_factor.cpp).
 #pragma once
 
 #include <functional>
@@ -29,12 +32,14 @@ namespace exactff::view_factors {
 
 class Refinement {
  public:
-  // Step 1. Keeps references to the patches and the memory.
+  // Step 1, up to a pause. Keeps references to the patches and the memory.
   Refinement(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from, const PreparedPatch& to,
              const ViewFactorOptions& options, PairMemory& memory);
 
-  // Steps 2 and 3. Asks now and then whether the integral is known well enough.
+  // Steps 2 and 3, up to a pause. Asks now and then whether the integral is known well enough.
   void refine(const std::function<bool(const kernel::Disc& integral)>& is_enough);
+  // The next pause is at twice the effort. False if the budget is used up, or no share can be improved.
+  [[nodiscard]] bool go_on();
 
   // The narrowest that has been found, in squares of the unit of Point::at, with the roundings of sums.
   [[nodiscard]] const kernel::Disc& enclosure() const { return narrowest_; }
@@ -42,6 +47,7 @@ class Refinement {
   [[nodiscard]] double estimate() const;
   [[nodiscard]] bool is_zero() const { return waiting_.empty() && settled_.empty() && !gave_up_; }
   [[nodiscard]] std::size_t cells() const { return cells_; }
+  [[nodiscard]] std::uint64_t effort() const { return effort_; }  // as Pair::effort
   [[nodiscard]] std::size_t event_cells() const;
 
  private:
@@ -56,6 +62,9 @@ class Refinement {
 
   void add_pair(std::unique_ptr<Pair> pair);
   void give_up();
+  [[nodiscard]] bool pauses() const { return options_.sample_crowds && !options_.certify; }
+  [[nodiscard]] Pair::Budget budget_left() const;
+  [[nodiscard]] bool may_work() const { return cost_ < options_.budget && effort_ < pause_; }
   [[nodiscard]] double accuracy_of_stage() const;
   [[nodiscard]] double target_of_stage() const;
   [[nodiscard]] Pair::Limits limits() const;
@@ -70,6 +79,7 @@ class Refinement {
   const PreparedPatch& from_;
   const PreparedPatch& to_;
   ViewFactorOptions options_;
+  std::uint64_t pause_;                       // the effort at the next one
   double smaller_area_;                       // of the two patches
   double least_error_;                        // shares of less are never improved
   std::vector<std::unique_ptr<Pair>> pairs_;  // null: sees nothing
@@ -79,6 +89,7 @@ class Refinement {
   double running_error_ = 0.0;
   std::size_t made_ = 0;  // shares
   std::size_t cells_ = 0, cost_ = 0;
+  std::uint64_t effort_ = 0;
   bool gave_up_ = false;  // nothing but 0 <= F <= 1 is known
   kernel::Disc narrowest_;
 };

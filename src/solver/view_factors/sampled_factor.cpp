@@ -2,22 +2,38 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "exactff/exact.h"
 #include "kernel/poll.h"
 #include "view_factors/factor_bound.h"
 #include "view_factors/near_planes.h"
+#include "view_factors/split_strata.h"
 #include "view_factors/strata.h"
 
 namespace exactff::view_factors {
 namespace {
 
-constexpr std::size_t kPointsOfStratum = kDraws * kFewestPoints;
-constexpr std::size_t kFirstStrata = 54;
+constexpr std::size_t kPointsOfStratum = kDraws;
+constexpr std::size_t kFirstStrata = kPointsOfFirstLook / kPointsOfStratum;
 static_assert(kFirstStrata >= kFewestStrata);
+constexpr double kOfExpected = 0.95;     // of a width: what is expected is a little less
+constexpr double kNarrower = 0.1;        // than the look before
+constexpr double kLeastOfWidths = 0.75;  // of the width that is expected if F is the same in every stratum
+constexpr double kDecay = 1.5;           // of the square of the error: the exponent of the number of strata
+
+constexpr std::size_t kPointsOfSplit = 2 * kPointsOfStratum;  // more after a split than before, at most
+
+// About what they take (Pair::effort), measured in crowds.
+constexpr std::uint64_t kEffortOfPoint = 100, kEffortOfPlane = 125, kEffortOfCandidate = 15, kEffortOfEdges = 2;
+
+double risk_of(std::size_t look) { return kRisk / static_cast<double>(look * (look + 1)); }
 
 // F at exact points of a patch. Nothing where rounding matters.
 class PointFactors {
@@ -31,9 +47,15 @@ class PointFactors {
     const std::optional<Vec3> rounded = near->round(point);
     if (!rounded) return std::nullopt;
     exact_form_factor(scene_.scene, {.point = *rounded, .normal = near->normal(), .on = near->own(), .id = {}}, source_,
-                      {}, factor_);
+                      {}, factor_, workspace_);
+    effort_ += kEffortOfPoint;
+    for (const PlaneRecord& plane : factor_.planes) {
+      effort_ += kEffortOfPlane + kEffortOfCandidate * plane.tree_candidates + kEffortOfEdges * plane.pairs;
+    }
     return factor_.value;
   }
+  // So far, as of Pair::effort.
+  [[nodiscard]] std::uint64_t effort() const { return effort_; }
 
  private:
   const ExactScene& scene_;
@@ -41,44 +63,49 @@ class PointFactors {
   ExactSource source_;
   std::vector<std::optional<NearPlanes>> near_;  // made when asked for
   FormFactor factor_;
+  Workspace workspace_;
+  std::uint64_t effort_ = 0;
 };
 
-// The largest F that distance and slope allow.
+// The largest F if nothing hides any of the source.
 class LargestFactors {
  public:
   LargestFactors(const ExactScene& scene, const std::vector<Part>& from, const std::vector<Part>& to)
-      : units_(scene.units), from_(from) {
-    if (to.size() > kMostParts) return;
-    for (const Part& source : to) sources_.push_back({positions_of(source.corners), plane_of(source, units_)});
-    bounds_.resize(from.size());
-  }
+      : units_(scene.units), from_(from), to_(to), bounds_(from.size()) {}
 
   // From every point of the tile.
-  double on(const Tile& tile) {
-    if (bounds_.empty()) return 1.0;
-    std::vector<FactorBound>& bounds = bounds_[tile.part];
-    if (bounds.empty()) {
-      const Plane receiver = plane_of(from_[tile.part], units_);
-      for (const Source& source : sources_) bounds.emplace_back(source.corners, source.plane, receiver);
-    }
-    const std::vector<Vec3> corners = corners_of(from_[tile.part], tile, units_);
+  double on(const Tile& tile) { return on(tile.part, corners_of(from_[tile.part], tile, units_)); }
+  // From every point of the convex hull of these points of a part.
+  double on(std::size_t part, std::span<const Vec3> corners) {
+    if (to_.size() > kMostParts) return 1.0;
+    if (bounds_[part].empty()) prepare(part);
     double sum = 0.0;
-    for (std::size_t i = 0; i < bounds.size() && sum < 1.0; ++i) sum += bounds[i].on(corners);
+    for (const OfPart& of : bounds_[part]) {
+      sum += std::min(of.by_distance.on(corners), of.open.on(corners));
+      if (sum >= 1.0) return 1.0;
+    }
     return std::min(1.0, sum * kSum);
   }
 
  private:
-  struct Source {
-    std::vector<Vec3> corners;
-    Plane plane;
+  struct OfPart {
+    FactorBound by_distance;
+    OpenFactorBound open;
   };
   static constexpr std::size_t kMostParts = 256;  // of more, F is only known to be at most 1
   static constexpr double kSum = 1.0 + 0x1p-40;   // more than the roundings of the sum
 
+  void prepare(std::size_t part) {
+    const Plane receiver = plane_of(from_[part], units_);
+    for (const Part& source : to_) {
+      const std::vector<Vec3> corners = positions_of(source.corners);
+      bounds_[part].push_back({{corners, plane_of(source, units_), receiver}, {corners, receiver}});
+    }
+  }
+
   const Units& units_;
-  const std::vector<Part>& from_;
-  std::vector<Source> sources_;
-  std::vector<std::vector<FactorBound>> bounds_;  // by part; made when asked for
+  const std::vector<Part>&from_, &to_;
+  std::vector<std::vector<OfPart>> bounds_;  // by part; made when asked for
 };
 
 // Of means over the patch.
@@ -88,55 +115,163 @@ struct Look {
   Ranges ranges;
 };
 
-Look look_at(const ExactScene& scene, const std::vector<Part>& from, const Strata& strata, std::size_t number,
-             PointFactors& factors, LargestFactors& largest) {
-  Look look;
-  for (std::size_t s = 0; s < strata.strata.size(); ++s) {
+std::vector<Part> fragments_of(const ExactScene& scene, const std::vector<Part>& parts) {
+  std::vector<Part> fragments;
+  for (const Part& part : parts) {
     kernel::poll();
-    double range = 0.0;
-    for (std::size_t t = strata.strata[s].begin; t < strata.strata[s].end; ++t) {
-      range = std::max(range, largest.on(strata.tiles[t]));
-    }
-    std::array<double, kDraws> means{}, unknown{};
-    for (std::size_t d = 0; d < kDraws; ++d) {
-      const auto [part, points] = sample(from, strata, number, s, d, scene.units);
-      for (const Point& point : points) {
-        const std::optional<double> value = factors.at(point, part);
-        (value ? means : unknown)[d] += value.value_or(range) / static_cast<double>(points.size());
-      }
-    }
-    const double share = strata.strata[s].area / strata.area;
-    look.f.add(means[0], means[1], share);
-    look.unknown.add(unknown[0], unknown[1], share);
-    look.ranges.add(range, share);
+    std::ranges::move(cut_at_contacts(scene, part), std::back_inserter(fragments));
   }
-  return look;
+  return fragments;
+}
+
+Vec3 middle_of(std::span<const Vec3> corners) {
+  Vec3 sum;
+  for (const Vec3& corner : corners) sum = {sum.x + corner.x, sum.y + corner.y, sum.z + corner.z};
+  return kernel::scaled(sum, 1.0 / static_cast<double>(corners.size()));
+}
+
+// Over a few strata, of the bounds at their middles: smaller strata have hardly smaller ones.
+double mean_of_bounds(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to) {
+  LargestFactors largest(scene, from.parts, to.parts);
+  const Strata strata = strata_of(from.parts, kFewestStrata);
+  double sum = 0.0;
+  for (const Stratum& stratum : strata.strata) {
+    const Tile& tile = strata.tiles[stratum.begin];
+    const Vec3 middle = middle_of(corners_of(from.parts[tile.part], tile, scene.units));
+    sum += stratum.area / strata.area * largest.on(tile.part, {&middle, 1});
+  }
+  return sum;
 }
 
 }  // namespace
 
-SampledMean sampled_mean(const ExactScene& scene, const std::vector<Part>& parts, const PreparedPatch& to,
-                         std::size_t budget, double target) {
-  std::vector<Part> from;
-  for (const Part& part : parts) {
-    kernel::poll();
-    std::ranges::move(cut_at_contacts(scene, part), std::back_inserter(from));
+class SampledMean::Looks {
+ public:
+  Looks(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to)
+      : scene_(scene),
+        from_(fragments_of(scene, from.parts)),
+        factors_(scene, from_, to.selection),
+        largest_(scene, from_, to.parts),
+        of_shares_(error_of_shares(from_, scene.units)),
+        strata_(from_, kFirstStrata, [this](const Tile& tile) { return largest_.on(tile); }) {}
+
+  [[nodiscard]] std::size_t points() const { return points_; }
+  [[nodiscard]] std::size_t points_after_next() const { return points_ + points_of_next(); }
+  [[nodiscard]] std::size_t points_of_next() const { return kPointsOfStratum * strata_.strata().strata.size(); }
+  // Of the first look, on average.
+  [[nodiscard]] std::uint64_t effort_of_point() const { return effort_of_point_; }
+  [[nodiscard]] std::uint64_t effort_after_next() const { return effort_of_point_ * points_after_next(); }
+  [[nodiscard]] std::size_t strata() const { return last_strata_; }  // of the last look
+  // False if all points might then be more than `most`, or the strata are too small.
+  bool split_within(std::size_t most) { return points_after_next() + kPointsOfSplit <= most && strata_.split(); }
+
+  // Of the next look, from the bounds and the last look.
+  [[nodiscard]] double expected_width() const {
+    const double ratio = static_cast<double>(last_strata_) / static_cast<double>(strata_.strata().strata.size());
+    StratifiedMean f = last_.f;
+    f.square *= std::pow(ratio, kDecay);
+    const double error = f.error(risk_of(number_ + 1), strata_.ranges(), last_.unknown);
+    return std::min(1.0, f.value + error) - std::max(0.0, f.value - error);
   }
-  std::size_t looks = 1;
-  for (std::size_t strata = 4 * kFirstStrata; strata * kPointsOfStratum <= budget; strata *= 4) ++looks;
-  PointFactors factors(scene, from, to.selection);
-  LargestFactors largest(scene, from, to.parts);
-  const double of_shares = error_of_shares(from, scene.units);
-  SampledMean result;
-  for (std::size_t number = 0, strata = kFirstStrata; number < looks; ++number, strata *= 4) {
-    const Strata cut = strata_of(from, strata);
-    const Look look = look_at(scene, from, cut, number, factors, largest);
-    const double risk = kRisk / static_cast<double>(looks);
-    const double error = look.f.error(risk, look.ranges, look.unknown) + of_shares + kRoundedPoints;
-    if (error < result.error) result = {look.f.value, error};
-    if (result.error <= target) break;
+
+  std::pair<double, double> look() {
+    last_ = {};
+    last_strata_ = strata_.strata().strata.size();
+    for (std::size_t s = 0; s < last_strata_; ++s) {
+      kernel::poll();
+      add(s);
+    }
+    ++number_;
+    points_ += points_of_next();
+    if (number_ == 1) effort_of_point_ = factors_.effort() / points_;
+    const double error = last_.f.error(risk_of(number_), last_.ranges, last_.unknown);
+    return {last_.f.value, error + of_shares_ + kRoundedPoints};
   }
-  return result;
+
+ private:
+  void add(std::size_t stratum) {
+    const Strata& strata = strata_.strata();
+    const double range = strata_.range(stratum);
+    std::array<double, kDraws> known{}, unknown{};
+    for (std::size_t d = 0; d < kDraws; ++d) {
+      Draws draws(number_, stratum, d);
+      const Tile& tile = draw_tile(strata, strata.strata[stratum], d, draws);
+      const Point point = point_in(from_[tile.part], tile, draws, scene_.units);
+      const std::optional<double> value = factors_.at(point, tile.part);
+      (value ? known : unknown)[d] = value.value_or(range);
+    }
+    const double share = strata.strata[stratum].area / strata.area;
+    last_.f.add(known[0], known[1], share);
+    last_.unknown.add(unknown[0], unknown[1], share);
+    last_.ranges.add(range, share);
+  }
+
+  const ExactScene& scene_;
+  const std::vector<Part> from_;
+  PointFactors factors_;
+  LargestFactors largest_;
+  const double of_shares_;
+  SplitStrata strata_;
+  std::size_t number_ = 0, points_ = 0;  // so far
+  Look last_;
+  std::size_t last_strata_ = 0;
+  std::uint64_t effort_of_point_ = 0;
+};
+
+SampledMean::SampledMean(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to, std::size_t most,
+                         double ratio)
+    : scene_(scene), from_(from), to_(to), most_(std::max(most, kPointsOfFirstLook)), ratio_(ratio) {
+  constexpr double kMany = 0x1p20;
+  const double mean = mean_of_bounds(scene, from, to);
+  const Ranges ranges{mean / kMany, mean * mean / kMany};
+  width_of_one_ = kMany * kLeastOfWidths * 2.0 * StratifiedMean{.value = 1.0}.error(risk_of(1), ranges);
+}
+SampledMean::~SampledMean() = default;
+
+double SampledMean::lower() const { return std::max(0.0, value_ - error_); }
+double SampledMean::upper() const { return std::min(1.0, value_ + error_); }
+
+bool SampledMean::may_reach(double width, std::uint64_t effort) const {
+  const double points = static_cast<double>(kPointsOfStratum) * width_of_one_ * ratio_ / width;
+  const std::uint64_t of_point = looks_ ? looks_->effort_of_point() : kEffortOfPoint + kEffortOfPlane;
+  return points <= static_cast<double>(most_) && points * static_cast<double>(of_point) <= static_cast<double>(effort);
+}
+
+double SampledMean::next_width() const {
+  double next = 1.0;
+  while (next >= width()) next *= kNarrower;
+  return next;
+}
+
+// The first one tells what the others are predicted from.
+bool SampledMean::look(std::uint64_t effort) {
+  if (looks_ == nullptr) {
+    looks_ = std::make_unique<Looks>(scene_, from_, to_);
+    take_look();
+    return true;
+  }
+  const double wanted = kOfExpected * next_width() / ratio_;
+  while (looks_->expected_width() > wanted) {
+    if (looks_->effort_after_next() > effort || !looks_->split_within(most_)) return false;
+  }
+  if (looks_->effort_after_next() > effort || looks_->points_after_next() > most_) return false;
+  take_look();
+  return true;
+}
+
+void SampledMean::look_with_the_rest(double width) {
+  while (looks_->split_within(most_)) {
+  }
+  if (looks_->points_after_next() <= most_ && looks_->expected_width() * ratio_ < width) take_look();
+}
+
+void SampledMean::take_look() {
+  const auto [value, found] = looks_->look();
+  const double least = std::min(1.0, width_of_one_ / static_cast<double>(looks_->strata()));
+  const double error = std::max({found, 0.5 * least, least - value});
+  if (!(error < error_)) return;
+  value_ = value;
+  error_ = error;
 }
 
 }  // namespace exactff::view_factors

@@ -10,6 +10,7 @@ namespace exactff::view_factors {
 namespace {
 
 constexpr int kWeightBits = 32;
+constexpr std::uint64_t kWholeTile = std::uint64_t{1} << kWeightBits;
 
 std::uint64_t mix(std::uint64_t key) { return kernel::split_mix(0, key); }
 
@@ -71,6 +72,34 @@ Point point_at(const Part& part, const Tile& tile, const Integer& s, const Integ
   return make_point(std::move(sum), units);
 }
 
+// A random place in a tile, as fractions of it.
+class PlacesIn {
+ public:
+  PlacesIn(const Tile& tile, Draws& draws);
+  [[nodiscard]] std::uint64_t across() const { return across_; }
+  [[nodiscard]] std::uint64_t up() const { return up_; }
+  [[nodiscard]] Point point(const Part& part, std::uint64_t across, std::uint64_t up, const Units& units) const {
+    const Integer s = Integer(tile_.column * kWholeTile + across) * Integer(tile_.rows);
+    const Integer t = Integer(tile_.row * kWholeTile + up) * Integer(tile_.columns);
+    return point_at(part, tile_, s, t, whole_, units);
+  }
+
+ private:
+  const Tile& tile_;
+  Integer whole_;
+  std::uint64_t across_, up_;
+};
+
+PlacesIn::PlacesIn(const Tile& tile, Draws& draws)
+    : tile_(tile),
+      whole_((Integer(tile.columns) * Integer(tile.rows)) << kWeightBits),
+      across_(draws.bits() >> (64 - kWeightBits)),
+      up_(draws.bits() >> (64 - kWeightBits)) {
+  if (tile.shape == Tile::Shape::kParallelogram || across_ + up_ <= kWholeTile) return;
+  across_ = kWholeTile - across_;
+  up_ = kWholeTile - up_;
+}
+
 }  // namespace
 
 Draws::Draws(std::size_t look, std::size_t stratum, std::size_t number)
@@ -115,21 +144,17 @@ const Tile& draw_tile(const Strata& strata, const Stratum& stratum, std::size_t 
   return strata.tiles[i];
 }
 
+Point point_in(const Part& part, const Tile& tile, Draws& draws, const Units& units) {
+  const PlacesIn places(tile, draws);
+  return places.point(part, places.across(), places.up(), units);
+}
+
 std::vector<Point> points_in(const Part& part, const Tile& tile, Draws& draws, const Units& units) {
-  constexpr std::uint64_t kWhole = std::uint64_t{1} << kWeightBits;
-  std::uint64_t a = draws.bits() >> (64 - kWeightBits), b = draws.bits() >> (64 - kWeightBits);
-  const Integer whole = (Integer(tile.columns) * Integer(tile.rows)) << kWeightBits;
-  const auto point = [&](std::uint64_t across, std::uint64_t up) {
-    const Integer s = Integer(tile.column * kWhole + across) * Integer(tile.rows);
-    const Integer t = Integer(tile.row * kWhole + up) * Integer(tile.columns);
-    return point_at(part, tile, s, t, whole, units);
-  };
-  if (tile.shape == Tile::Shape::kParallelogram) return {point(a, b), point(kWhole - a, kWhole - b)};
-  if (a + b > kWhole) {
-    a = kWhole - a;
-    b = kWhole - b;
-  }
-  const std::uint64_t c = kWhole - a - b;
+  const PlacesIn places(tile, draws);
+  const std::uint64_t a = places.across(), b = places.up();
+  const auto point = [&](std::uint64_t across, std::uint64_t up) { return places.point(part, across, up, units); };
+  if (tile.shape == Tile::Shape::kParallelogram) return {point(a, b), point(kWholeTile - a, kWholeTile - b)};
+  const std::uint64_t c = kWholeTile - a - b;
   return {point(a, b), point(b, c), point(c, a)};
 }
 
@@ -147,9 +172,8 @@ std::vector<Vec3> corners_of(const Part& part, const Tile& tile, const Units& un
                     Integer(tile.row + up) * Integer(tile.columns), whole, units)
         .at;
   };
-  std::vector<Vec3> corners{at(0, 0), at(1, 0), at(0, 1)};
-  if (tile.shape == Tile::Shape::kParallelogram) corners.push_back(at(1, 1));
-  return corners;
+  if (tile.shape == Tile::Shape::kTriangle) return {at(0, 0), at(1, 0), at(0, 1)};
+  return {at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
 }
 
 void Ranges::add(double range, double share) {

@@ -61,8 +61,10 @@ struct Strata {
 // turn at its corners.
 [[nodiscard]] std::vector<Point> points_in(const Part& part, const Tile& tile, Draws& draws, const Units& units);
 inline constexpr std::size_t kFewestPoints = 2;  // of a draw
+// The first of them alone.
+[[nodiscard]] Point point_in(const Part& part, const Tile& tile, Draws& draws, const Units& units);
 
-// Its corners, rounded once.
+// Its corners, in the order of the part's, rounded once.
 [[nodiscard]] std::vector<Vec3> corners_of(const Part& part, const Tile& tile, const Units& units);
 
 // The points of one of the two draws of a stratum, in one part.

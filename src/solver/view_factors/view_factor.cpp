@@ -9,13 +9,16 @@
 // 3. Integrate F(x -> j) over each cell by Gauss' rules, with an error: an estimate (quadrature.h), or a bound where
 //    the factor is to be certified (certified_integral.h).
 // 4. Refine: halve the cell of the largest error until the sum of the errors is small enough (refinement.h).
-// 5. If the cells do not suffice in a crowd of occluders, estimate the integral by statistics (sampled_factor.h).
+// 5. In a crowd of occluders, cells may cost more than the mean of point factors at random points (sampled_factor.h).
+//    So whenever the cells have cost twice as much as before, points are taken as well, as far as they cost no more.
 // 6. Divide by A_i. A_i F_ij = A_j F_ji gives the factor of the other direction.
 //
 // Source: see exactff/view_factors.h.
 #include "view_factors/view_factor.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "exactff/view_factors.h"
@@ -33,48 +36,157 @@ namespace exactff {
 namespace view_factors {
 namespace {
 
-constexpr std::size_t kCellsOfAPoint = 4;  // that cost about as much as a point factor in a crowd
+constexpr double kMostDoublings = 2.0;  // of the cells' effort that are foreseen
+constexpr std::uint64_t kAnyEffort = std::uint64_t{1} << 62;
 
-// What all of the patch sees, from the integral.
+// Of a mean over the patch.
 void take_interval(const Disc& integral, const PreparedPatch& from, ViewFactor& result) {
   const Disc f = integral / from.enclosed_area;
   result.lower = is_finite(f) ? std::clamp(lower_end(f), 0.0, 1.0) : 0.0;
   result.upper = is_finite(f) ? std::clamp(upper_end(f), 0.0, 1.0) : 1.0;
 }
 
+double width_of(const ViewFactor& f) { return f.upper - f.lower; }
+
+// The larger one of both directions.
+double counted_width(const ViewFactor& f, const PreparedPatch& from, const PreparedPatch& to) {
+  return std::max(width_of(f), width_of(f) * from.unit_area / to.unit_area);
+}
+
 bool is_within(double accuracy, const ViewFactor& f, const PreparedPatch& from, const PreparedPatch& to) {
-  const double width = f.upper - f.lower;
-  return std::max(width, width * from.unit_area / to.unit_area) <= accuracy;
+  return counted_width(f, from, to) <= accuracy;
 }
 
-ViewFactor sampled(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to,
-                   const ViewFactorOptions& options) {
-  const double target = 0.5 * options.accuracy * std::min(1.0, to.unit_area / from.unit_area);
-  const auto [value, error] = sampled_mean(scene, from.parts, to, options.budget / kCellsOfAPoint, target);
-  ViewFactor result;
-  result.area_from = from.area;
-  result.area_to = to.area;
-  result.value = std::clamp(value, 0.0, 1.0);
-  result.lower = std::max(0.0, value - error);
-  result.upper = std::min(1.0, value + error);
-  result.claim = Claim::kEstimated;
-  return result;
+ViewFactor unknown_factor(const PreparedPatch& from, const PreparedPatch& to) {
+  return {.value = 0.5, .upper = 1.0, .area_from = from.area, .area_to = to.area, .claim = Claim::kEstimated};
 }
 
-// If the cells of a crowd tell less than statistics. The points lie on the smaller patch, if A_i F_ij = A_j F_ji holds:
-// the error of a mean over the larger one counts as many times as it is larger.
-void sample_if_better(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to,
-                      const ViewFactorOptions& options, ViewFactor& result) {
-  const bool turned = is_symmetric(from, to, options) && to.unit_area < from.unit_area;
-  const ViewFactor found =
-      turned ? transpose(sampled(scene, to, from, options), to, from) : sampled(scene, from, to, options);
-  if (!(found.upper - found.lower < result.upper - result.lower)) return;
-  result.way = Way::kPoints;
-  result.value = found.value;
-  result.lower = found.lower;
-  result.upper = found.upper;
-  result.accurate = is_within(options.accuracy, result, from, to);
+// Of two patches, whether points on the first one tell more of their factor for the same effort. The error of a mean
+// over the larger one counts as many times as it is larger, but F is as many times smaller there on average. A point
+// that sees many parts costs more.
+bool has_better_points(const PreparedPatch& one, const PreparedPatch& other) {
+  if (one.parts.size() != other.parts.size()) return one.parts.size() > other.parts.size();
+  return one.unit_area < other.unit_area;
 }
+
+class PointSearch {
+ public:
+  PointSearch(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to,
+              const ViewFactorOptions& options)
+      : from_(from),
+        to_(to),
+        turned_(is_symmetric(from, to, options) && has_better_points(to, from)),
+        mean_(scene, turned_ ? to : from, turned_ ? from : to, options.budget,
+              std::max(1.0, turned_ ? to.unit_area / from.unit_area : from.unit_area / to.unit_area)) {}
+
+  [[nodiscard]] const SampledMean& mean() const { return mean_; }
+  // Until the factor is accurate, or the next look would take more than this effort of all looks.
+  void look(std::uint64_t effort, double accuracy) {
+    while (!is_within(accuracy, factor(), from_, to_) && mean_.look(effort)) {
+    }
+  }
+  void look_with_the_rest(double width, double accuracy) {
+    if (is_within(accuracy, factor(), from_, to_)) return;
+    mean_.look_with_the_rest(std::min(width, counted_width(factor(), from_, to_)));
+  }
+
+  // The narrowest so far.
+  [[nodiscard]] ViewFactor factor() const {
+    ViewFactor f = turned_ ? unknown_factor(to_, from_) : unknown_factor(from_, to_);
+    f.way = Way::kPoints;
+    f.value = std::clamp(mean_.value(), 0.0, 1.0);
+    f.lower = mean_.lower();
+    f.upper = mean_.upper();
+    return turned_ ? transpose(f, to_, from_) : f;
+  }
+
+ private:
+  const PreparedPatch& from_;
+  const PreparedPatch& to_;
+  bool turned_;
+  SampledMean mean_;
+};
+
+// By cells and, where these are expected to cost more, by points. Both go on in their own way whatever the accuracy is,
+// and the narrower interval is the result. A smaller accuracy never yields a wider one: with it, cells and looks go on
+// where a larger one stops, but for looks that cannot reach it; and if an entry that is made accurate by cells has left
+// them out, none of them is narrower (SampledMean::may_reach).
+class Search {
+ public:
+  Search(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from, const PreparedPatch& to,
+         const ViewFactorOptions& options, PairMemory& memory)
+      : scene_(scene),
+        from_(from),
+        to_(to),
+        options_(options),
+        cells_(scene, seen, from, to, options, memory),
+        by_cells_(unknown_factor(from, to)) {}
+
+  ViewFactor find() {
+    do {
+      refine();
+    } while (!is_done() && go_on());
+    return result();
+  }
+
+ private:
+  void refine() {
+    if (cells_.is_zero()) return;
+    cells_.refine([&](const Disc& integral) {
+      take_interval(integral, from_, by_cells_);
+      return is_accurate(by_cells_);
+    });
+  }
+  [[nodiscard]] double counted(const ViewFactor& f) const { return counted_width(f, from_, to_); }
+  [[nodiscard]] bool is_accurate(const ViewFactor& f) const { return is_within(options_.accuracy, f, from_, to_); }
+  [[nodiscard]] bool is_done() const { return cells_.is_zero() || is_accurate(by_cells_); }
+
+  // False if nothing more can or need be done.
+  bool go_on() {
+    const bool cells_left = cells_.go_on();
+    if (options_.certify || !options_.sample_crowds) return cells_left;
+    if (!points_) points_.emplace(scene_, from_, to_, options_);
+    const std::uint64_t effort = cells_left ? predicted_effort() : kAnyEffort;
+    if (cells_left && !points_->mean().may_reach(options_.accuracy, effort)) return true;
+    points_->look(effort, options_.accuracy);
+    if (!cells_left) points_->look_with_the_rest(counted(by_cells_), options_.accuracy);
+    return cells_left && !is_accurate(points_->factor());
+  }
+
+  // That the cells may take until they are as narrow as the next look is to be, if each further doubling of their
+  // effort narrows them as the last one did; as far as it is foreseen.
+  [[nodiscard]] std::uint64_t predicted_effort() {
+    const double width = counted(by_cells_), doubling = std::log2(std::exchange(last_width_, width) / width);
+    const double needed = std::log2(width / points_->mean().next_width());
+    const double doublings = doubling > 0.0 ? std::clamp(needed / doubling, 0.0, kMostDoublings) : kMostDoublings;
+    return static_cast<std::uint64_t>(std::exp2(doublings) * static_cast<double>(cells_.effort()));
+  }
+
+  [[nodiscard]] ViewFactor result() const {
+    ViewFactor result = by_cells_;
+    if (cells_.is_zero()) {
+      result = {.area_from = from_.area, .area_to = to_.area};
+    } else if (points_ && width_of(points_->factor()) < width_of(by_cells_)) {
+      result = points_->factor();
+    } else {
+      result.claim = options_.certify ? Claim::kCertified : Claim::kEstimated;
+      result.value = std::clamp(cells_.estimate() / from_.unit_area, result.lower, result.upper);
+    }
+    result.accurate = cells_.is_zero() || is_accurate(result);
+    result.cells = cells_.cells();
+    result.event_cells = cells_.event_cells();
+    return result;
+  }
+
+  const ExactScene& scene_;
+  const PreparedPatch& from_;
+  const PreparedPatch& to_;
+  const ViewFactorOptions& options_;
+  Refinement cells_;
+  std::optional<PointSearch> points_;  // from the first pause on
+  ViewFactor by_cells_;                // its interval
+  double last_width_ = 1.0;            // of the cells at the pause before
+};
 
 }  // namespace
 
@@ -84,24 +196,7 @@ bool is_symmetric(const PreparedPatch& i, const PreparedPatch& j, const ViewFact
 
 ViewFactor factor_between(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from,
                           const PreparedPatch& to, const ViewFactorOptions& options, PairMemory& memory) {
-  ViewFactor result;
-  result.area_from = from.area;
-  result.area_to = to.area;
-  Refinement refinement(scene, seen, from, to, options, memory);
-  result.cells = refinement.cells();
-  if (refinement.is_zero()) return result;
-  refinement.refine([&](const Disc& integral) {
-    take_interval(integral, from, result);
-    return result.accurate = is_within(options.accuracy, result, from, to);
-  });
-  result.cells = refinement.cells();
-  result.event_cells = refinement.event_cells();
-  result.claim = options.certify ? Claim::kCertified : Claim::kEstimated;
-  result.value = std::clamp(refinement.estimate() / from.unit_area, result.lower, result.upper);
-  if (!options.certify && !result.accurate && options.sample_crowds) {
-    sample_if_better(scene, from, to, options, result);
-  }
-  return result;
+  return Search(scene, seen, from, to, options, memory).find();
 }
 
 ViewFactor transpose(const ViewFactor& f, const PreparedPatch& from, const PreparedPatch& to) {

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "exactff/exact.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
+#include "kernel/vec.h"
 #include "support/random_scenes.h"
 #include "view_factors/pair_shaft.h"
 #include "view_factors/patch_parts.h"
@@ -61,6 +63,44 @@ TEST(FactorBound, IsAtLeastEveryFormFactorOfTheCell) {
   }
   EXPECT_GE(seeing, 40);
   EXPECT_GE(tight, seeing / 4) << "of small patches, it should be of the order of the factor";
+}
+
+// Of hulls of all sizes about a point of the receiver, also of those that lie on both sides of the source's plane.
+TEST(OpenFactorBound, IsAtLeastEveryFormFactorOfTheHull) {
+  int tight = 0, small = 0;
+  for (std::uint64_t s = 0; s < scaled_count(400); ++s) {
+    Random random(seed_of(s));
+    const Scene scene = two_triangles(random);
+    const ExactScene exact(scene);
+    const Part receiver = parts_of(exact, scene.select("receiver")).front();
+    const Part source = parts_of(exact, scene.select("source")).front();
+    const Plane plane = plane_of(receiver, exact.units);
+    const OpenFactorBound bound(positions_of(source.corners), plane);
+    const std::vector<Vec3> corners = positions_of(receiver.corners);
+    const Vec3 middle = kernel::scaled(kernel::sum(kernel::sum(corners[0], corners[1]), corners[2]), 1.0 / 3.0);
+    const ExactSource from(scene, scene.select("source"));
+    const int exponent = static_cast<int>(exact.units.exponent + exact.units.shift);
+    for (const double size : {1.0, 0.25, 0x1p-12}) {
+      std::vector<Vec3> hull;
+      for (const Vec3& corner : corners)
+        hull.push_back(kernel::along(middle, kernel::difference(corner, middle), size));
+      const double largest = bound.on(hull);
+      double found = 0.0;
+      for (const Vec3& at : hull) {
+        const Receiver x{.point = {std::ldexp(at.x, exponent), std::ldexp(at.y, exponent), std::ldexp(at.z, exponent)},
+                         .normal = {plane.rounded[0], plane.rounded[1], plane.rounded[2]},
+                         .on = {receiver.face},
+                         .id = {}};
+        found = std::max(found, exact_form_factor(scene, x, from).value);
+      }
+      EXPECT_LE(found, largest) << s << ' ' << size;
+      if (size > 0.1 || found == 0.0) continue;
+      ++small;
+      tight += largest <= found + 0.01 ? 1 : 0;
+    }
+  }
+  EXPECT_GE(small, 40);
+  EXPECT_GE(tight, small / 2);
 }
 
 TEST(PairShaft, HoldsEverySegmentBetweenTheBoxes) {

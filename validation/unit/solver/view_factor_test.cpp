@@ -331,6 +331,46 @@ TEST(ViewFactor, OfACrowdIsByPoints) {
   EXPECT_LE(enough.upper - enough.lower, 0.2);
 }
 
+// Two squares with the slats of a blind between them, turned by different angles.
+PlainScene squares_with_slats() {
+  PlainScene scene = plates(1.0, 1.0);
+  constexpr int kSlats = 24;
+  for (int i = 0; i < kSlats; ++i) {
+    const double x = (i + 0.5) / kSlats, angle = 0.3 + 0.02 * i, half = 0.55 / kSlats;
+    const double dx = half * std::cos(angle), dz = half * std::sin(angle);
+    add(scene, "blind",
+        {{x - dx, 0.01, 0.5 - dz}, {x + dx, 0.02, 0.5 + dz}, {x + dx, 0.98, 0.5 + dz}, {x - dx, 0.99, 0.5 - dz}});
+  }
+  return scene;
+}
+
+// Long before the cells have cost what the limit allows.
+TEST(ViewFactor, OfACrowdIsByPointsAsSoonAsTheyAreCheaper) {
+  const Scene scene = generate::build(squares_with_slats());
+  const Selection from = named(scene, "below"), to = named(scene, "above");
+  const ViewFactor f = view_factor(scene, from, to, {.accuracy = 4e-3});
+  EXPECT_EQ(f.way, Way::kPoints);
+  EXPECT_TRUE(f.accurate);
+  EXPECT_LT(f.cells, 5000U);
+  const ViewFactor by_cells = view_factor(scene, from, to, {.accuracy = 4e-3, .budget = 3000, .sample_crowds = false});
+  EXPECT_LE(f.lower, by_cells.upper);
+  EXPECT_GE(f.upper, by_cells.lower);
+  const ViewFactor both = view_factor(scene, from, to, {.accuracy = 1e-6, .budget = 2000});  // cells that have paused
+  EXPECT_LE(both.lower, f.upper);
+  EXPECT_GE(both.upper, f.lower);
+}
+
+// Cells reach 1e-9 here, points could not: nothing is spent on them.
+TEST(ViewFactor, ThatPointsCannotReachIsByCells) {
+  const Scene scene = generate::build(plates_with_plate(1.0, 0.5, 0.75));
+  const Selection from = named(scene, "below"), to = named(scene, "above");
+  const ViewFactor f = view_factor(scene, from, to, {.accuracy = 1e-12, .budget = 20000}),
+                   alone = view_factor(scene, from, to, {.accuracy = 1e-12, .budget = 20000, .sample_crowds = false});
+  EXPECT_EQ(f.way, Way::kCells);
+  EXPECT_LE(f.lower, alone.upper);
+  EXPECT_GE(f.upper, alone.lower);
+}
+
 // Certified enclosures, and for the second one a bound: sizes and distance alone.
 TEST(ViewFactor, OfWhatOnceBrokeItHoldsTheTruth) {
   struct Case {
