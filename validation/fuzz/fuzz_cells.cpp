@@ -80,7 +80,7 @@ class CellJudge {
     if (sight) {
       pair.emplace(scene_, std::move(*sight), faces_of(scene_, receiver), nullptr, memory, 0);
       pair->set_limits({.rounding = 1e-9});
-      shares = pair->cells(0.0, kCells);
+      shares = pair->cells(0.0, {.cost = kCells, .effort = std::uint64_t{1} << 62});
     }
     const NearPlanes near(exact_, receiver);
     const ExactSource exact_source(scene_, whole);

@@ -13,10 +13,10 @@
 namespace exactff {
 namespace {
 
-using Ring = std::vector<std::uint32_t>;
+using VertexRing = std::vector<std::uint32_t>;
 
 // Faces of one patch.
-Scene scene_of(const std::vector<Vec3>& vertices, const std::vector<std::vector<Ring>>& faces) {
+Scene scene_of(const std::vector<Vec3>& vertices, const std::vector<std::vector<VertexRing>>& faces) {
   SceneBuilder builder;
   for (const Vec3& v : vertices) builder.add_vertex(v);
   const MaterialId material = builder.add_material({.name = "grey", .reflectance = {0.5, 0.5, 0.5}});
@@ -30,7 +30,7 @@ double area_of(const Scene& scene) { return total_area(summarise(scene)); }
 // A cell that is cut into triangles has a diagonal that may be longer.
 void expect_short_sides(const Scene& cells, double length) {
   for (const Face& face : cells.faces()) {
-    for (const Ring& ring : face.rings) {
+    for (const VertexRing& ring : face.rings) {
       const double most = (ring.size() == 3 ? 2.0 : 1.0) * length * (1.0 + 1e-8);
       for (std::size_t k = 0; k < ring.size(); ++k) {
         const Vec3 &a = cells.vertices()[ring[k]], &b = cells.vertices()[ring[(k + 1) % ring.size()]];
@@ -58,7 +58,7 @@ DividedScene expect_cells(const Scene& scene, double length) {
 }
 
 // A cube turned by no special angle, with its fronts outside.
-Scene turned_cube(const std::vector<std::vector<Ring>>& faces) {
+Scene turned_cube(const std::vector<std::vector<VertexRing>>& faces) {
   std::vector<Vec3> corners;
   for (int k = 0; k < 8; ++k) {
     const double x = k & 1, y = k >> 1 & 1, z = k >> 2 & 1;
@@ -66,8 +66,8 @@ Scene turned_cube(const std::vector<std::vector<Ring>>& faces) {
   }
   return scene_of(corners, faces);
 }
-const std::vector<std::vector<Ring>> kCube = {{{0, 2, 3, 1}}, {{4, 5, 7, 6}}, {{0, 1, 5, 4}},
-                                              {{2, 6, 7, 3}}, {{0, 4, 6, 2}}, {{1, 3, 7, 5}}};
+const std::vector<std::vector<VertexRing>> kCube = {{{0, 2, 3, 1}}, {{4, 5, 7, 6}}, {{0, 1, 5, 4}},
+                                                    {{2, 6, 7, 3}}, {{0, 4, 6, 2}}, {{1, 3, 7, 5}}};
 
 TEST(Division, RectangleBecomesAGrid) {
   const Scene scene = scene_of({{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {0, 2, 0}}, {{{0, 1, 2, 3}}});
@@ -110,7 +110,7 @@ TEST(Division, PointsAreSharedAtJunctions) {
   for (int k = 0; k < 8; ++k) corners.push_back({0.1 * (k & 1), 0.3 * (k >> 1 & 1), 0.7 * (k >> 2 & 1)});
   corners.push_back({0.1, 0.3, 0.2});
   corners.push_back({0.1, 0.0, 0.2});
-  std::vector<std::vector<Ring>> faces = kCube;
+  std::vector<std::vector<VertexRing>> faces = kCube;
   faces[5] = {{1, 3, 8, 9}};
   faces.push_back({{9, 8, 7, 5}});
   const Scene scene = scene_of(corners, faces);
@@ -129,7 +129,7 @@ TEST(Division, FacesOfAnyShapeAreCovered) {
   const Scene needle = scene_of({{0, 0, 0}, {100, 1e-3, 3}, {100, 0, 3}}, {{{0, 1, 2}}});
   EXPECT_GE(expect_cells(needle, 1.0).cells, 100U);
   std::vector<Vec3> round;
-  Ring ring;
+  VertexRing ring;
   for (int k = 0; k < 60; ++k) {
     round.push_back({std::cos(k * 0.1047), std::sin(k * 0.1047), 0.25});
     ring.push_back(static_cast<std::uint32_t>(k));
