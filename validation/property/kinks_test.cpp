@@ -62,7 +62,7 @@ class Kinks : public testing::TestWithParam<RandomFamily> {
       EXPECT_EQ(found_.kink()->faces, expected_.kink()->faces);
     }
     if (side_of(plane, view.x) <= 0) return false;
-    return proof_.excludes_kinks({view, plane, request}, find_visible_boundary(view, plane, request, workspace_));
+    return proof_.excludes_kinks({view, plane, request});
   }
 
   visibility::EdgeWorkspace workspace_;

@@ -177,8 +177,7 @@ class Solver {
                  .list_cutters = options.list_cutters,
                  .only_occluders = options.only_occluders,
                  .culling = options.culling,
-                 .remembers_covers = !options.from_scratch,
-                 .notes_touching = wants_gradient_},
+                 .remembers_covers = !options.from_scratch},
         result_(result),
         memory_(memory) {}
 

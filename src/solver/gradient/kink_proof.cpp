@@ -6,22 +6,12 @@ using visibility::EdgeId;
 using visibility::Outlines;
 using visibility::PieceClip;
 using visibility::PlaneQuery;
-using visibility::PlaneVisibility;
 using visibility::Silhouettes;
 using visibility::View;
 
-bool KinkProof::excludes_kinks(const PlaneQuery& query, const PlaneVisibility& seen) {
+bool KinkProof::excludes_kinks(const PlaneQuery& query) {
   if (query.request.engine == Engine::kBoolean) return false;
-  if (seen.has_all_outlines && seen.boundary.edges() != nullptr) {
-    return by_outlines(query.view, seen.boundary.edges()->outlines(), seen.source_outlines);
-  }
   return searches_silhouettes(query) && by_silhouettes(query);
-}
-
-bool KinkProof::by_outlines(const View& view, Outlines& outlines, std::size_t source_outlines) {
-  groups_.clear();
-  groups_.add_open_edges(outlines, source_outlines);
-  return lie_apart_or_on_one_line(view, outlines);
 }
 
 bool KinkProof::by_silhouettes(const PlaneQuery& query) {

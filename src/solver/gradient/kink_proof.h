@@ -4,11 +4,6 @@
 // edge of the source or an edge with pieces on one side alone, all of it in the closed shaft, and not on the horizon.
 // So there is none if no such piece is seen edge-on, and if such edges that lie in one plane through x always lie on
 // one line in space, or on the horizon. That is checked
-//   - for the outlines with which the visible boundary was found, if nothing merely touches the shaft, since the search
-//     leaves that out. It joins pieces in one plane, and the edges between them have pieces on both sides. And it
-//     leaves out backs of closed surfaces, all of whose pieces occlude. Such a surface passes each edge as often one
-//     way as the other, so an edge with its backs alone has them on both sides; one with a front on one side alone
-//     stays such an edge;
 //   - for the silhouettes of meshes. The jump of an edge with pieces on one side is not 0, so it is one
 //     (visibility/silhouettes.h). And the search looks at all edges of a piece seen edge-on, since no bound of normals
 //     leaves them out.
@@ -24,11 +19,9 @@ class KinkProof {
  public:
   // False: not proved, or not tried, since what is known is not enough or shall not be shared (by the Booleans).
   // Requires that x lies in front of the source's plane.
-  [[nodiscard]] bool excludes_kinks(const visibility::PlaneQuery& query, const visibility::PlaneVisibility& seen);
+  [[nodiscard]] bool excludes_kinks(const visibility::PlaneQuery& query);
 
  private:
-  [[nodiscard]] bool by_outlines(const visibility::View& view, visibility::Outlines& outlines,
-                                 std::size_t source_outlines);
   [[nodiscard]] bool by_silhouettes(const visibility::PlaneQuery& query);
   [[nodiscard]] bool lie_apart_or_on_one_line(const visibility::View& view, visibility::Outlines& outlines);
 

@@ -89,7 +89,7 @@ void KinkSearch::find_around_source(const PlaneQuery& query, const PlaneVisibili
   visibility::BoundaryRequest request = query.request;
   request.culling = ShaftCulling::kTree;
   const PlaneQuery closed{query.view, query.plane, request};
-  if (proof_.excludes_kinks(closed, seen)) return;
+  if (proof_.excludes_kinks(closed)) return;
   profile_.gather(closed);
   if (profile_.source_count() == 0 || profile_.stays_hidden()) return;
   const std::optional<std::uint32_t>& touching = profile_.touching();

@@ -3,7 +3,7 @@
 // A kink needs an arc of positive length, above the horizon and on the source, along which nothing covers both sides,
 // and on which x sees a face edge-on or lines at different depths as one (sight_plane.h). So for one plane of the
 // source:
-//   0. try to prove that there is none, from the outlines or silhouettes that are known (kink_proof.h);
+//   0. try to prove that there is none, from silhouettes (kink_proof.h);
 //   1. gather what touches the closed shaft (profile.h); stop if one piece hides more than the source;
 //   2. drop edges with a piece on both sides: they are covered;
 //   3. group the edges that are left by the planes through x in which they lie. Planes are compared by a number that
