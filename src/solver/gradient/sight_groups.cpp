@@ -46,7 +46,8 @@ bool are_on_one_line(const Outlines& outlines, std::span<const EdgeId> group) {
   return std::ranges::all_of(group, [&](EdgeId id) {
     const auto [a, b] = ends_of(id);
     const auto is_on_line = [&](std::uint32_t v) {
-      return is_zero(cross(along, kernel::exact_difference(outlines.position(v), origin).v));
+      return v == *ends.first || v == *ends.second ||
+             is_zero(cross(along, kernel::exact_difference(outlines.position(v), origin).v));
     };
     return a && b && is_on_line(*a) && is_on_line(*b);
   });

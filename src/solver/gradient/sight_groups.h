@@ -39,7 +39,8 @@ bool SightGroups::for_each(visibility::Outlines& outlines, const Visit& visit, s
   std::ranges::sort(entries_,
                     [](const Entry& p, const Entry& q) { return p.low != q.low ? p.low < q.low : p.edge < q.edge; });
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (entries_[i].done) continue;
+    const bool is_alone = i + 1 == entries_.size() || entries_[i + 1].low > entries_[i].high;
+    if (entries_[i].done || (is_alone && least > 1)) continue;
     const visibility::Outlines::Edge edge = outlines.edge(entries_[i].edge);
     group_.assign(1, entries_[i].edge);
     for (std::size_t j = i + 1; j < entries_.size() && entries_[j].low <= entries_[i].high; ++j) {

@@ -7,7 +7,6 @@ namespace exactff::visibility {
 namespace {
 
 constexpr std::uint64_t kCandidatesPerPoll = 1'024;
-constexpr Sides kInside{.certain = true, .some_above_each = true, .all_above_each = true};
 
 }  // namespace
 
@@ -56,7 +55,7 @@ bool Candidates::visit(PanelId panel, bool inside) {
   ++record_.tree_candidates;
   // 3. Only what enters the shaft,
   if (!inside) clip_.take(vertices);
-  const Sides sides = inside ? kInside : shaft_.sides();
+  const Sides sides = inside ? kInsideShaft : shaft_.sides();
   if (!sides.some_above_each) return false;
   search_.seen.set(panel);
   const int facing = facing_of(query_.view, panels_.piece(panel));

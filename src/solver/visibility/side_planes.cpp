@@ -18,7 +18,7 @@ EXACTFF_CLONES Sides sides_of(std::span<const SidePlane> planes, const FourCorne
     const Four height = plane.normal.x * x + plane.normal.y * y + plane.normal.z * z - plane.offset;
     const Four error = plane.error_per_size * size + plane.error;
     const unsigned above = lane_bits(height > error), below = lane_bits(-height > error);
-    if (below == kAll) return {true, false, false, is_first, 0};  // one plane is enough, whatever the others say
+    if (below == kAll) return {true, false, false, is_first, 0, true};  // one plane is enough, whatever the others say
     sides.certain = sides.certain && (above | below) == kAll;
     sides.some_above_each = sides.some_above_each && above != 0;
     sides.all_above_each = sides.all_above_each && above == kAll;
