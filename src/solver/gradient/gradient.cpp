@@ -69,7 +69,7 @@ bool PointGradient::finish(int cap, Gradient& result) {
   const auto take = [&](const contour::QuickGradient::Value& value, Derivative& derivative) {
     if (!something_visible_) {
       set_zero(derivative);
-    } else if (!quick || !is_determined(kernel::ball_around(value.hi, value.lo, value.error), derivative)) {
+    } else if (!quick || !is_determined(value.hi, value.lo, value.error, derivative)) {
       derivative.status = DerivativeStatus::kEnclosed;  // so far
       done = false;
     }

@@ -123,8 +123,12 @@ void KinkSearch::find_open_edges() {
 
 // 3. and 4. False: stopped.
 bool KinkSearch::judge_groups(const PlaneQuery& query, Extent extent) {
-  return groups_.for_each(profile_.outlines(), [&](std::span<const EdgeId> group) {
-    if (!are_on_one_line(profile_.outlines(), group)) judge(query, profile_.outlines().edge(group.front()), extent);
+  Outlines& outlines = profile_.outlines();
+  const kernel::Approx3 n{query.view.n.x, query.view.n.y, query.view.n.z};
+  return groups_.for_each(outlines, [&](std::span<const EdgeId> group) {
+    const Outlines::Edge edge = outlines.edge(group.front());
+    const bool is_on_horizon = outlines.side_by_filter(n, edge.a) == 0 && outlines.side_by_filter(n, edge.b) == 0;
+    if (!is_on_horizon && !are_on_one_line(outlines, group)) judge(query, edge, extent);
     return !(kink_ && extent == Extent::kFirst);
   });
 }
