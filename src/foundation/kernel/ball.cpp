@@ -66,8 +66,8 @@ Ball ball_around(double hi, double lo, double error) {
   return result;
 }
 
-// The sums with hi round numbers that are no larger than the least one, and no smaller than the largest; and rounding is
-// monotone.
+// The sums with hi round numbers that are no larger than the least one, and no smaller than the largest; and rounding
+// is monotone.
 std::optional<double> nearest_around(double hi, double lo, double error) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const double first = hi + std::nextafter(lo - error, -kInfinity), last = hi + std::nextafter(lo + error, kInfinity);
