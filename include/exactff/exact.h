@@ -173,7 +173,7 @@ struct Gradient {
   std::vector<GradientArc> arcs;  // on request, the largest part first; not at kinks
   // On request: the vertices by which the derivative is not proved to be zero, and those at kinks, ascending; not at
   // kinks of dF/dx. The receiver stays. Where a face meets the source's plane, the border moves with both planes. Each
-  // plane follows three vertices (include/README.md); those of the source are `frames`, by FormFactor::planes.
+  // plane follows three vertices (include/README.md); those of the source are `frames`, one for each face.
   std::vector<VertexDerivative> vertices;
   std::vector<std::array<std::uint32_t, 3>> frames;
 };

@@ -123,7 +123,7 @@ class VertexGradient:
     derivative: Floats  #: exact: (m, 3), correctly rounded where certified
     status: NDArray[np.int8]  #: (m, 3), see :class:`DerivativeStatus`
     enclosures: tuple[tuple[Enclosure, ...], ...]  #: encloses: a ball for each; without meaning at kinks
-    frames: NDArray[np.int64]  #: (planes, 3) the vertices that each plane of the source follows
+    frames: NDArray[np.int64]  #: (faces, 3) the vertices that the plane of each face of the source follows
 
 
 @dataclass(frozen=True)
