@@ -39,7 +39,8 @@ for file in bin/exactff include/exactff/exact.h include/exactff/version.h share/
 done
 programs=$(find "$prefix" -type f -perm /111 ! -name '*.so*' -printf '%P\n')
 [ "$programs" = bin/exactff ] || fail "programs other than exactff are installed: $programs"
-! grep -rIl --fixed-strings -e "$top" -e "$build" "$prefix" || fail "these files name the folder that they were built in"
+# The name of the top folder alone may be a part of others.
+! grep -rIl --fixed-strings --regexp="$top/"{src,include,data,validation} --regexp="$build" "$prefix" || fail "these files name the folder that they were built in"
 
 quietly "running the program" "$prefix/bin/exactff" point "$prefix/$examples/scenes/cornell_box.obj" \
   --at 278 0 279.6 --normal 0 1 0 --on floor --source light

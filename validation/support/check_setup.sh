@@ -36,6 +36,7 @@ END
 printf '#!/bin/bash\nexec "$@"\n' > "$work/bin/sudo"
 chmod +x "$work"/bin/*
 export FAKE=$work
+setup_or_no=  # whatever is set where this runs
 
 # on SYSTEM VERSION OFFERED INSTALLED [ARGUMENT...]: of packages besides those that every known system has.
 on() {
@@ -46,7 +47,7 @@ on() {
   [ "$4" != all ] || echo "$common" > "$work/installed"
   : > "$work/calls"
   status=0
-  PATH=$work/bin:$PATH EXACTFF_OS_RELEASE=$work/os-release "$setup" "${@:5}" > "$work/log" 2>&1 || status=$?
+  PATH=$work/bin:$PATH EXACTFF_SETUP=$setup_or_no EXACTFF_OS_RELEASE=$work/os-release "$setup" "${@:5}" > "$work/log" 2>&1 || status=$?
   installs=$(sed -n 's/^apt-get install //p' "$work/calls")
 }
 asks_for() { [[ " $installs " == *" $1 "* ]]; }
@@ -80,6 +81,7 @@ on fedora 41 "" ""
 for line in "FLINT  *3, .* 2\.9 with Arb 2\.23" "Embree  *4, or 3\.13" "CGAL  *5\.5 to 6" "CMAKE_PREFIX_PATH" "fedora 41"; do
   grep -q "$line" "$work/log" || fail "does not say on an unknown system: $line"
 done
-EXACTFF_SETUP=no on fedora 41 "" ""
+setup_or_no=no
+on fedora 41 "" ""
 [ "$status" = 0 ] && [ ! -s "$work/log" ] || fail "does something with EXACTFF_SETUP=no"
 echo "setup.sh asks for what is offered, and refuses systems that it does not know"

@@ -124,7 +124,8 @@ std::string x_range(const Axes& axes, const std::vector<Points>& drawn) {
   return "set xrange [" + text::shortest(*low / 1.5) + ':' + text::shortest(*high * 1.5) + "]\n";
 }
 
-// A logarithmic axis of a single value, or one without a power of ten on it, would have no number beside it.
+// A logarithmic axis of a single value, or one without a power of ten on it, would have no number beside it. And
+// gnuplot 6 writes a number at minor tics, too, of an axis of less than two decades: no longer all powers of ten.
 std::string readable_ranges(const Axes& axes, const std::vector<Points>& drawn) {
   std::vector<double> xs = drawn_marks(axes), ys;
   for (const Points& points : drawn) {
@@ -137,9 +138,14 @@ std::string readable_ranges(const Axes& axes, const std::vector<Points>& drawn) 
   const auto widen = [&](const char* axis, const std::vector<double>& values, double margin) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     const double below = std::floor(std::log10(*low / margin)), above = std::ceil(std::log10(*high * margin));
-    if (std::ceil(std::log10(*low / margin)) <= std::floor(std::log10(*high * margin))) return;
-    text += std::string("set ") + axis + "range [1e" + std::to_string(static_cast<int>(below)) + ":1e" +
-            std::to_string(static_cast<int>(above)) + "]\n";
+    const bool widens = std::ceil(std::log10(*low / margin)) > std::floor(std::log10(*high * margin));
+    if (widens) {
+      text += std::string("set ") + axis + "range [1e" + std::to_string(static_cast<int>(below)) + ":1e" +
+              std::to_string(static_cast<int>(above)) + "]\n";
+    }
+    const bool ends_at_powers = widens || margin == 1.0;
+    const double decades = ends_at_powers ? above - below : std::log10(*high / *low * margin * margin);
+    if (decades < 2.0) text += std::string("if (GPVAL_VERSION >= 6.0) set format ") + axis + " '%g'\n";
   };
   if (axes.log_x) widen("x", xs, 1.5);
   if (axes.log_y) widen("y", ys, 1.0);
