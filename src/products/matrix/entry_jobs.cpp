@@ -81,7 +81,8 @@ EntryJobs::EntryJobs(const Scene& scene, std::span<const Selection> from, std::s
   }
   if (options.open) {
     with_sky_ = with_sky(scene);
-    to_sky_.emplace(with_sky_->scene, of_any_scene(from), std::span(&with_sky_->sky, 1), options_beside(options));
+    to_sky_.emplace(with_sky_->scene, of_any_scene(from), std::span(&with_sky_->sky, 1), options_beside(options),
+                    view_factors::Columns::kSurroundings);
   }
 }
 
@@ -123,7 +124,7 @@ void EntryJobs::compute(std::size_t job, const std::function<void(std::size_t, c
   const std::size_t further = job - pairs_.count(), row = further % from_.size();
   if (to_backs_ && further < from_.size()) {
     take(entries.front(), factor_to_backs(row));
-  } else if (to_sky_->is_enclosed(row)) {
+  } else if (pairs_.is_enclosed(row)) {
     take(entries.front(), {.area_from = pairs_.area_from(row)});
   } else {
     to_sky_->compute(row, [&](std::size_t, const ViewFactor& f) { take(entries.front(), f); });

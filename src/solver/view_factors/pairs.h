@@ -15,11 +15,19 @@ namespace exactff::view_factors {
 
 struct PreparedPatch;
 
+// What the columns are.
+enum class Columns {
+  kPatches,
+  // Each is a patch whose fronts lie all around the scene and look inward, at infinity as it were, and that hides
+  // nothing. The factor to it is what the occluders leave of all directions.
+  kSurroundings,
+};
+
 class Pairs {
  public:
   // Throws what view_factor throws. Keeps a reference to the scene.
   Pairs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
-        const ViewFactorOptions& options);
+        const ViewFactorOptions& options, Columns what = Columns::kPatches);
   ~Pairs();
   Pairs(const Pairs&) = delete;
   Pairs& operator=(const Pairs&) = delete;

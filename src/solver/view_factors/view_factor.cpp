@@ -191,7 +191,7 @@ class Search {
 }  // namespace
 
 bool is_symmetric(const PreparedPatch& i, const PreparedPatch& j, const ViewFactorOptions& options) {
-  return i.planar && j.planar && !options.both_directions;
+  return i.planar && j.planar && !j.surrounds && !options.both_directions;
 }
 
 ViewFactor factor_between(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from,
