@@ -311,7 +311,7 @@ int run(const RadiosityArguments& args) {
   Solution solution = radiosity::solve(scene, matrix);
   radiosity::set_variation(scene, solution, args.threads, hooks);
   bar.clear();
-  warn_of_width(matrix::Matrix{matrix.factors, {}, {}}, args.factors);
+  print_warnings(problems_of_width(scene, matrix::Matrix{matrix.factors, {}, {}}, args.factors));
   if (!args.output.empty()) write_whole_file(args.output, csv_text(scene, solution, args.factors, args.origin()));
   if (!args.vtk.empty()) write_vtk(scene, solution, args.vtk);
   const bool balanced = test_balance(solution);
@@ -347,7 +347,7 @@ Command add_radiosity(CLI::App& app) {
   command->add_option("--two-sided", args->two_sided, kTwoSidedHelp)->type_name("NAME");
   command->add_option("--accuracy", args->factors.accuracy, "Largest width of a view factor, for F_ij and for F_ji")
       ->capture_default_str();
-  command->add_option("--budget", args->factors.budget, "Largest number of cells, and of points, for a view factor")
+  command->add_option("--budget", args->factors.budget, kBudgetHelp)
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
       ->capture_default_str();
   add_claim(*command, args->factors.certify);

@@ -85,6 +85,7 @@ Pairs::Pairs(const Scene& scene, std::span<const Selection> from, std::span<cons
         known.try_emplace({key_of(ends.from->selection), key_of(ends.to->selection)}, entries_.size());
     if (is_new) entries_.emplace_back();
     entries_[place->second].push_back(e);
+    pair_of_.push_back(place->second);
   }
 }
 Pairs::~Pairs() = default;

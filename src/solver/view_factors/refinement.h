@@ -49,6 +49,10 @@ class Refinement {
   [[nodiscard]] std::size_t cells() const { return cells_; }
   [[nodiscard]] std::uint64_t effort() const { return effort_; }  // as Pair::effort
   [[nodiscard]] std::size_t event_cells() const;
+  // What ended it, if the integral is not known well enough.
+  [[nodiscard]] Limit limit() const {
+    return gave_up_ ? Limit::kCrowd : cost_ >= options_.budget ? Limit::kBudget : Limit::kRounding;
+  }
 
  private:
   struct Waiting {

@@ -173,6 +173,7 @@ class Search {
       result.value = std::clamp(cells_.estimate() / from_.unit_area, result.lower, result.upper);
     }
     result.accurate = cells_.is_zero() || is_accurate(result);
+    if (!result.accurate) result.limit = points_ ? Limit::kBudget : cells_.limit();
     result.cells = cells_.cells();
     result.event_cells = cells_.event_cells();
     return result;
@@ -237,6 +238,20 @@ std::string_view to_string(Way way) {
       return "points";
     case Way::kViews:
       return "views";
+  }
+  return {};
+}
+
+std::string_view to_string(Limit limit) {
+  switch (limit) {
+    case Limit::kNone:
+      return "none";
+    case Limit::kBudget:
+      return "budget";
+    case Limit::kCrowd:
+      return "crowd";
+    case Limit::kRounding:
+      return "rounding";
   }
   return {};
 }
