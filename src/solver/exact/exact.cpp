@@ -188,7 +188,7 @@ class Solver {
     for (std::size_t p = 0; p < planes_.size(); ++p) {
       PlaneVisibility seen = find(planes_[p]);
       if (wants_gradient_) {
-        memory_.gradient->add({view_, planes_[p], request_}, seen);
+        memory_.gradient->add({view_, planes_[p], request_}, seen.boundary);
       } else {
         memory_.quick.add(seen.boundary);
       }
