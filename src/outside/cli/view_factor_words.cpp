@@ -64,7 +64,7 @@ std::string words_of_wide(const Scene& scene, const matrix::Matrix& matrix, cons
 std::string why(Limit limit, std::size_t budget) {
   switch (limit) {
     case Limit::kBudget:
-      return "the limit of work for an entry, " + std::to_string(budget) + " cells and as many points, is reached";
+      return "the limit of work for an entry, " + text::counted(budget, "cell") + " and as many points, is reached";
     case Limit::kCrowd:
       return "so much stands between that its cells would not fit into memory";
     case Limit::kRounding:
@@ -76,15 +76,16 @@ std::string why(Limit limit, std::size_t budget) {
 }
 
 std::string what_helps(Limit limit, bool certify) {
-  const std::string estimates = certify ? ", or take estimates instead of --certify" : "";
+  const std::string estimates = ", or take estimates instead of --certify";
   switch (limit) {
     case Limit::kBudget:
     case Limit::kNone:
-      return "give more by --budget, ask for less by --accuracy, or divide patches by --divide" + estimates;
+      return std::string("give more by --budget, ask for less by --accuracy, ") +
+             (certify ? "divide patches by --divide" + estimates : "or divide patches by --divide");
     case Limit::kCrowd:
-      return "divide patches by --divide" + estimates;
+      return "divide patches by --divide" + (certify ? estimates : "");
     case Limit::kRounding:
-      return "ask for less by --accuracy" + estimates;
+      return "ask for less by --accuracy" + (certify ? estimates : "");
   }
   return {};
 }

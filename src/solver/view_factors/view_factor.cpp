@@ -173,7 +173,7 @@ class Search {
       result.value = std::clamp(cells_.estimate() / from_.unit_area, result.lower, result.upper);
     }
     result.accurate = cells_.is_zero() || is_accurate(result);
-    if (!result.accurate) result.limit = points_ ? Limit::kBudget : cells_.limit();
+    if (!result.accurate) result.limit = result.way == Way::kPoints ? Limit::kBudget : cells_.limit();
     result.cells = cells_.cells();
     result.event_cells = cells_.event_cells();
     return result;
