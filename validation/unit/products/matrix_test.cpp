@@ -489,7 +489,7 @@ TEST_F(MatrixFilesOfTheCommand, TellsWhyEntriesAreWider) {
   const auto command = [&](std::vector<std::string> more) {
     std::vector<std::string> all = {"matrix", EXACTFF_DATA_DIR "/scenes/cornell_box.obj", "--from", "light", "--to"};
     all.insert(all.end(), more.begin(), more.end());
-    const validation::RunningProgram program(EXACTFF_PROGRAM, all, folder_.path());
+    const validation::RunningProgram program(EXACTFF_PROGRAM, all, folder_.path() / "told");
     const int exit_code = program.wait();
     told = program.error();
     return exit_code;
