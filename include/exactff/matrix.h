@@ -27,7 +27,7 @@ struct Options {
   ViewFactorOptions factors = {};
   bool backs = false;  // also compute what meets the backs of faces
   bool open = false;   // also compute what meets nothing
-  // Largest number of cells for an entry of these two, if that is less than factors.budget.
+  // The limit of work for an entry of these two, if that is less than factors.budget.
   std::size_t budget_beside = std::numeric_limits<std::size_t>::max();
   int threads = 0;  // 0: all; does not affect the result
 };
@@ -110,8 +110,8 @@ struct Reciprocity {
 inline constexpr std::string_view kBack = "(back)";
 inline constexpr std::string_view kOpen = "(open)";
 
-// A row for each entry: from,to,factor,lower,upper,claim,way,accurate,area_from,area_to,cells,event_cells. Doubles read
-// back to the same bits.
+// A row for each entry: from,to,factor,lower,upper,claim,way,accurate,area_from,area_to,cells,event_cells,limit.
+// Doubles read back to the same bits.
 [[nodiscard]] std::string csv_text(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options);
 [[nodiscard]] std::string csv_text(const Scene& scene, const Matrix& draft, const DraftOptions& options);
 
@@ -125,7 +125,8 @@ struct Table {
   std::vector<std::uint32_t> lines;    // of all entries, in the order of the file: row by row, with back and open
   bool has_old_claims = false;         // "topology-proved" or "statistical", which are read as `estimated`
 };
-// Reads what csv_text wrote, also before `way` was a column. Throws one InputError with file:line for every problem.
+// Reads what csv_text wrote, also before `way` and `limit` were columns. Throws one InputError with file:line for every
+// problem.
 [[nodiscard]] Table read_csv(const std::filesystem::path& file);
 // Whether a file begins like one of these, by its content.
 [[nodiscard]] bool is_csv(const std::filesystem::path& file);

@@ -46,11 +46,21 @@ enum class Way {
 };
 [[nodiscard]] std::string_view to_string(Way way);  // "cells", "points", "views"
 
+// What ended the work on an entry that is wider than the accuracy.
+enum class Limit {
+  kNone,      // it is not, or a file does not tell
+  kBudget,    // the limit of work, ViewFactorOptions::budget, is reached
+  kCrowd,     // so much stands between that its cells would not fit into memory
+  kRounding,  // what is left of the error are roundings of doubles
+};
+[[nodiscard]] std::string_view to_string(Limit limit);  // "none", "budget", "crowd", "rounding"
+
 struct ViewFactorOptions {
   // Of F_ij and of F_ji: upper - lower is at most this. At the same budget, a smaller one never yields more.
   double accuracy = 1e-6;
-  std::size_t budget = 100000;  // the most cells, where one with many edges counts for several, and the most points
-  bool sample_crowds = true;    // take points where they are expected to cost less than cells
+  // The limit of work for an entry: the most cells, where one with many edges counts for several, and the most points.
+  std::size_t budget = 100000;
+  bool sample_crowds = true;  // take points where they are expected to cost less than cells
   // Compute F_ij and F_ji apart, each by cells of its own patch, so that each tests the other. Otherwise, if all faces
   // are planar, one of them is computed, whichever is asked for, by cells of whichever patch seems to need fewer, and
   // A_i F_ij = A_j F_ji gives the other.
@@ -65,6 +75,7 @@ struct ViewFactor {
   Claim claim = Claim::kZero;
   Way way = Way::kCells;
   bool accurate = true;  // within the accuracy asked for
+  Limit limit = Limit::kNone;
   std::size_t cells = 0, event_cells = 0;
 };
 

@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -186,6 +189,112 @@ TEST(Enclosed, SeesNothingOpenInEveryFamily) {
     }
   }
   EXPECT_GE(counts.open, 20U);
+}
+
+// --- How much is open ---
+
+struct Mean {
+  double value = 0.0, standard_error = 0.0;
+};
+
+// Of whole views from random points.
+Mean mean_of_views(const Scene& scene, const Selection& patch, std::uint64_t count, std::uint64_t seed) {
+  double sum = 0.0, squares = 0.0;
+  for (const Receiver& receiver : sample_receivers(scene, scene.faces_of(patch), count, seed)) {
+    const double open = view(scene, receiver).open.value;
+    sum += open;
+    squares += open * open;
+  }
+  const auto n = static_cast<double>(count);
+  const double mean = sum / n;
+  return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1.0))};
+}
+
+// Nothing where a patch's area is no double beside the rest of the scene, or the scene is too large for a sky.
+std::optional<ViewFactor> open_to(const Scene& scene, const Selection& patch, const ViewFactorOptions& options) {
+  try {
+    return matrix::compute(scene, {&patch, 1}, {}, {.factors = options, .open = true, .threads = 1}).open.front();
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+// Each row with cells alone, certified, and with points where they cost less.
+struct Judged {
+  std::size_t open = 0, certified = 0, in_part = 0;
+};
+void judge_open(const Scene& scene, const Selection& patch, const std::string& where, std::uint64_t points,
+                Judged& judged) {
+  const Mean mean = mean_of_views(scene, patch, points, 7);
+  for (const bool certify : {false, true}) {
+    for (const bool points_too : {false, true}) {
+      if (certify && points_too) continue;
+      const std::optional<ViewFactor> f = open_to(scene, patch,
+                                                  {.accuracy = 1e-3,
+                                                   .budget = 1000,
+                                                   .sample_crowds = points_too,
+                                                   .both_directions = false,
+                                                   .certify = certify});
+      if (!f) return;
+      EXPECT_LE(f->lower, f->value) << where;
+      EXPECT_LE(f->value, f->upper) << where;
+      EXPECT_LE(f->lower - 5.0 * mean.standard_error - 1e-6, mean.value) << where << ' ' << certify << points_too;
+      EXPECT_GE(f->upper + 5.0 * mean.standard_error + 1e-6, mean.value) << where << ' ' << certify << points_too;
+      judged.open += f->accurate && f->value > 0.0 ? 1 : 0;
+      judged.certified += f->accurate && f->claim == Claim::kCertified ? 1 : 0;
+      judged.in_part += f->accurate && f->lower > 0.01 && f->upper < 0.99 ? 1 : 0;
+    }
+  }
+}
+
+TEST(Open, IsTheMeanOfViewsInRoomsWithoutAWall) {
+  Judged judged;
+  for (std::uint64_t s = 0; s < scaled_count(12); ++s) {
+    Random random(seed_of(s));
+    generate::PlainScene plain = s % 3 == 0 ? random_hull_room(random) : random_building(random).scene;
+    plain.patches.erase(plain.patches.begin() + random.integer(0, 3));
+    const Scene scene = generate::build(plain);
+    for (int i = 0; i < 2; ++i) {
+      const Selection patch{static_cast<PatchId>(random.below(scene.patches().size())), {}, scene.id()};
+      if (scene.faces_of(patch).size() != 1) continue;
+      judge_open(scene, patch, std::to_string(s) + ' ' + scene.name_of(patch), 256, judged);
+    }
+  }
+  EXPECT_GE(judged.open, 10U);
+  EXPECT_GE(judged.certified, 3U);
+  EXPECT_GE(judged.in_part, 5U);
+}
+
+TEST(Open, IsTheMeanOfViewsInRandomScenes) {
+  Judged judged;
+  for (std::uint64_t s = 0; s < scaled_count(30); ++s) {
+    Random random(seed_of(s));
+    const Scene scene = generate::build(s % 2 == 0 ? degenerate_scene(random) : generic_scene(random));
+    const Selection patch{static_cast<PatchId>(random.below(scene.patches().size())), {}, scene.id()};
+    if (scene.faces_of(patch).size() != 1) continue;
+    judge_open(scene, patch, std::to_string(s) + ' ' + scene.name_of(patch), 256, judged);
+  }
+  EXPECT_GE(judged.open, 10U);
+  EXPECT_GE(judged.in_part, 5U);
+}
+
+// In a room that is open at its front.
+TEST(Open, IsTheRestOfARow) {
+  const Scene scene = read_scene(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
+  const std::vector<Selection> all = all_of(scene);
+  const matrix::Matrix m =
+      matrix::compute(scene, all, all, {.factors = {.accuracy = 3e-3}, .backs = true, .open = true});
+  for (std::size_t row = 0; row < all.size(); ++row) {
+    double lower = m.back[row].lower, upper = m.back[row].upper;
+    for (std::size_t column = 0; column < all.size(); ++column) {
+      lower += m.factors.at(row, column).lower;
+      upper += m.factors.at(row, column).upper;
+    }
+    EXPECT_TRUE(m.open[row].accurate);
+    EXPECT_LE(m.open[row].lower, 1.0 - lower + 1e-9) << scene.name_of(all[row]);
+    EXPECT_GE(m.open[row].upper, 1.0 - upper - 1e-9) << scene.name_of(all[row]);
+    EXPECT_LE(m.open[row].cells, 20000U) << "edges of the sky must make no cells";
+  }
 }
 
 }  // namespace

@@ -347,7 +347,8 @@ void print_summary(const MatrixArguments& args, const jobs::Summary& summary) {
 // The values of the finished file, or of no file at all.
 int finish(const MatrixArguments& args, const MatrixJob& job, const matrix::Matrix& matrix) {
   const matrix::Options& options = job.request.options;
-  args.draft ? warn_of_width(matrix, draft_options(args, options)) : warn_of_width(matrix, options.factors);
+  print_warnings(args.draft ? problems_of_width(job.scene, matrix, draft_options(args, options))
+                            : problems_of_width(job.scene, matrix, options.factors));
   write_files(args, job.scene, options, matrix);
   args.plain ? print_plain(job.scene, matrix) : print_table(job.scene, matrix);
   const bool rows_hold = test_rows(args, job.scene, matrix),
@@ -455,11 +456,9 @@ Command add_matrix(CLI::App& app) {
                               ->add_option("--accuracy", args->options.factors.accuracy,
                                            "Largest width of an entry, for F_ij and for F_ji; 1e-3 with --draft")
                               ->capture_default_str();
-  CLI::Option* budget =
-      command
-          ->add_option("--budget", args->options.factors.budget, "Largest number of cells, and of points, for an entry")
-          ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
-          ->capture_default_str();
+  CLI::Option* budget = command->add_option("--budget", args->options.factors.budget, kBudgetHelp)
+                            ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
+                            ->capture_default_str();
   const ClaimOptions claims = add_claim(*command, args->options.factors.certify);
   CLI::Option* draft =
       command

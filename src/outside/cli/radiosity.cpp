@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,7 +26,9 @@
 #include "radiosity/on_faces.h"
 #include "text/interval.h"
 #include "text/json_document.h"
+#include "text/number_text.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "vtk/vtk.h"
 
 namespace exactff::cli {
@@ -47,6 +51,9 @@ constexpr const char* kRadiosityFooter =
     "patch\n"
     "(its centre, and near its corners), by exact form factors, from its one radiosity. --divide LENGTH makes smaller\n"
     "ones. `exactff render --radiosity FILE` shows the light of the file that -o writes.\n"
+    "--matrix FILE takes the view factors from a file of `exactff matrix SCENE --backs --to all,sky -o FILE`, a run "
+    "that\n"
+    "--resume continues and --shard and mpirun share out. One of another scene is refused.\n"
     "The balance is printed as bounds, [lower, upper], within what is possible; a number alone is rounded to six "
     "digits.\n"
     "\n"
@@ -56,6 +63,7 @@ constexpr const char* kRadiosityFooter =
     "  exactff radiosity data/scenes/cornell_box.obj --divide 140 --accuracy 1e-3 --budget 1000 -o build/cells.csv";
 
 constexpr std::size_t kMostPatchesShown = 40;
+constexpr std::string_view kSceneHash = "scene hash ";  // in the head of a matrix
 
 struct RadiosityArguments {
   flags::SceneArguments scene;
@@ -64,6 +72,7 @@ struct RadiosityArguments {
   int threads = 0;
   bool plain = false, json = false, csv = false;
   std::string output, vtk;
+  std::string matrix;  // a file
   bool force = false;
 
   [[nodiscard]] bool for_people() const { return !plain && !json && !csv; }
@@ -296,7 +305,54 @@ void print(const RadiosityArguments& args, const Scene& scene, const Solution& s
   }
 }
 
-int run(const RadiosityArguments& args) {
+// What the head of the file says of the accuracy and the limit of work.
+ViewFactorOptions options_of(const matrix::Table& table) {
+  ViewFactorOptions options;
+  for (const std::string& line : table.header) {
+    const auto number_after = [&](std::string_view word, double otherwise) {
+      const std::size_t at = line.find(word);
+      if (at == std::string::npos) return otherwise;
+      const std::string rest = line.substr(at + word.size());
+      const text::ParsedNumber number = text::parse_number(rest.substr(0, rest.find_first_of(", ")));
+      return number.fault == text::NumberFault::kNone ? number.value : otherwise;
+    };
+    if (!line.starts_with(kSceneHash)) continue;
+    options.accuracy = number_after("; accuracy ", options.accuracy);
+    options.budget = static_cast<std::size_t>(number_after(", budget ", 1.0));
+    options.certify = line.find(", certify") != std::string::npos;
+  }
+  return options;
+}
+
+void require_matrix_of(const Scene& scene, const matrix::Table& table) {
+  const bool is_of_scene = std::ranges::any_of(table.header, [&](const std::string& line) {
+    return line.starts_with(std::string(kSceneHash) + scene.hash() + ';');
+  });
+  if (!is_of_scene) {
+    text::refuse(std::filesystem::path(table.file), "holds the view factors of another scene",
+                 "its head has another hash", "give the same scene, with the same --divide, --two-sided and --patches");
+  }
+  if (!table.back.empty() && !table.open.empty()) return;
+  text::refuse(std::filesystem::path(table.file), "has no columns (back) and (open)",
+               "the balance needs what meets backs and what is open",
+               "compute it by exactff matrix SCENE --backs --to all,sky -o FILE");
+}
+
+// Computed, or of the file; `options` are then those of the file.
+matrix::Matrix view_factors_of(const RadiosityArguments& args, const Scene& scene,
+                               const std::vector<Selection>& patches, const Hooks& hooks, ViewFactorOptions& options) {
+  if (args.matrix.empty()) {
+    return matrix::compute(scene, patches, patches, radiosity::matrix_options({options, args.threads}), hooks);
+  }
+  const matrix::Table table = matrix::read_csv(args.matrix);
+  require_matrix_of(scene, table);
+  options = options_of(table);
+  const matrix::Options with_all{.factors = options, .backs = true, .open = true};
+  return matrix::read({.scene = &scene, .from = patches, .to = patches, .options = with_all, .shard = {}}, args.matrix);
+}
+
+int run(const RadiosityArguments& given) {
+  RadiosityArguments args = given;
   check_outputs(args);
   const Scene scene = load(args.scene, args.two_sided);
   const std::vector<Selection> patches = radiosity::patches_of(scene);
@@ -306,12 +362,11 @@ int run(const RadiosityArguments& args) {
   }
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
-  const matrix::Matrix matrix =
-      matrix::compute(scene, patches, patches, radiosity::matrix_options({args.factors, args.threads}), hooks);
+  const matrix::Matrix matrix = view_factors_of(args, scene, patches, hooks, args.factors);
   Solution solution = radiosity::solve(scene, matrix);
   radiosity::set_variation(scene, solution, args.threads, hooks);
   bar.clear();
-  warn_of_width(matrix::Matrix{matrix.factors, {}, {}}, args.factors);
+  print_warnings(problems_of_width(scene, matrix::Matrix{matrix.factors, {}, {}}, args.factors));
   if (!args.output.empty()) write_whole_file(args.output, csv_text(scene, solution, args.factors, args.origin()));
   if (!args.vtk.empty()) write_vtk(scene, solution, args.vtk);
   const bool balanced = test_balance(solution);
@@ -345,12 +400,19 @@ Command add_radiosity(CLI::App& app) {
   args->scene.add_to(*command);
   args->scene.add_divide_to(*command);
   command->add_option("--two-sided", args->two_sided, kTwoSidedHelp)->type_name("NAME");
-  command->add_option("--accuracy", args->factors.accuracy, "Largest width of a view factor, for F_ij and for F_ji")
-      ->capture_default_str();
-  command->add_option("--budget", args->factors.budget, "Largest number of cells, and of points, for a view factor")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
-      ->capture_default_str();
-  add_claim(*command, args->factors.certify);
+  CLI::Option* accuracy =
+      command->add_option("--accuracy", args->factors.accuracy, "Largest width of a view factor, for F_ij and for F_ji")
+          ->capture_default_str();
+  CLI::Option* budget = command->add_option("--budget", args->factors.budget, kBudgetHelp)
+                            ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
+                            ->capture_default_str();
+  const ClaimOptions claims = add_claim(*command, args->factors.certify);
+  command->add_option("--matrix", args->matrix, "Take the view factors from this file of exactff matrix")
+      ->type_name("FILE")
+      ->excludes(accuracy)
+      ->excludes(budget)
+      ->excludes(claims.claim)
+      ->excludes(claims.certify);
   add_outputs(*command, *args);
   command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
       ->check(CLI::Range(0, 1024));

@@ -1,27 +1,93 @@
 #include "cli/view_factor_words.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
 
 #include "cli/output.h"
 #include "exactff/slips.h"
 #include "flags/lists.h"
+#include "text/nearest_names.h"
 #include "text/phrases.h"
+#include "text/text_lines.h"
 
 namespace exactff::cli {
 
 namespace {
 
-void warn_of_width(const matrix::Matrix& matrix, double accuracy, const std::string& spent, const std::string& more) {
-  const auto wide_of = [](const std::vector<ViewFactor>& list) {
-    return std::ranges::count_if(list, [](const ViewFactor& f) { return !f.accurate; });
+struct Wide {
+  std::size_t row = 0;
+  std::string to;
+  double width = 0.0;
+};
+
+std::vector<Wide> wide_entries(const Scene& scene, const matrix::Matrix& matrix, Limit limit) {
+  std::vector<Wide> wide;
+  const matrix::Factors& all = matrix.factors;
+  const auto look_at = [&](std::size_t row, const auto& name, const ViewFactor& f) {
+    if (!f.accurate && f.limit == limit) wide.push_back({row, name(), f.upper - f.lower});
   };
-  const auto wide = wide_of(matrix.factors.entries) + wide_of(matrix.back) + wide_of(matrix.open);
-  if (wide == 0) return;
-  print_warnings(std::vector<Problem>{{.what = text::counted(static_cast<std::uint64_t>(wide), "entry", "entries") +
-                                               (wide == 1 ? " is" : " are") + " wider than the accuracy " +
-                                               text::shortest(accuracy),
-                                       .why = spent + "; their bounds are as strong as their claims",
-                                       .suggestion = more + ", or ask for less by --accuracy"}});
+  for (std::size_t i = 0; i < all.from.size(); ++i) {
+    for (std::size_t j = 0; j < all.to.size(); ++j) {
+      look_at(
+          i, [&] { return text::in_quotes(scene.name_of(all.to[j])); }, all.at(i, j));
+    }
+    if (!matrix.back.empty())
+      look_at(
+          i, [] { return std::string(matrix::kBack); }, matrix.back[i]);
+    if (!matrix.open.empty())
+      look_at(
+          i, [] { return std::string(matrix::kOpen); }, matrix.open[i]);
+  }
+  std::ranges::stable_sort(wide, std::ranges::greater(), &Wide::width);
+  return wide;
+}
+
+// "2 entries are wider than the accuracy 0.001: 'floor' to 'light' by 0.004, ..."
+std::string words_of_wide(const Scene& scene, const matrix::Matrix& matrix, const std::vector<Wide>& wide,
+                          double accuracy) {
+  constexpr std::size_t kMostNamed = 3;
+  std::vector<std::string> named;
+  for (const Wide& one : wide) {
+    if (named.size() == kMostNamed) break;
+    named.push_back(text::in_quotes(scene.name_of(matrix.factors.from[one.row])) + " to " + one.to + " (" +
+                    text::short_number(one.width, 2) + ")");
+  }
+  if (wide.size() > kMostNamed) named.emplace_back("...");
+  return text::counted(static_cast<std::uint64_t>(wide.size()), "entry", "entries") +
+         (wide.size() == 1 ? " is" : " are") + " wider than the accuracy " + text::shortest(accuracy) + ": " +
+         text::joined(named, ", ");
+}
+
+std::string why(Limit limit, std::size_t budget) {
+  switch (limit) {
+    case Limit::kBudget:
+      return "the limit of work for an entry, " + text::counted(budget, "cell") + " and as many points, is reached";
+    case Limit::kCrowd:
+      return "so much stands between that its cells would not fit into memory";
+    case Limit::kRounding:
+      return "what is left of their errors are roundings of doubles";
+    case Limit::kNone:
+      break;
+  }
+  return "the file does not tell why";
+}
+
+std::string what_helps(Limit limit, bool certify) {
+  const std::string estimates = ", or take estimates instead of --certify";
+  switch (limit) {
+    case Limit::kBudget:
+    case Limit::kNone:
+      return std::string("give more by --budget, ask for less by --accuracy, ") +
+             (certify ? "divide patches by --divide" + estimates : "or divide patches by --divide");
+    case Limit::kCrowd:
+      return "divide patches by --divide" + (certify ? estimates : "");
+    case Limit::kRounding:
+      return "ask for less by --accuracy" + (certify ? estimates : "");
+  }
+  return {};
 }
 
 }  // namespace
@@ -54,15 +120,27 @@ ClaimOptions add_claim(CLI::App& command, bool& certify) {
   return options;
 }
 
-void warn_of_width(const matrix::Matrix& matrix, const ViewFactorOptions& options) {
-  warn_of_width(matrix, options.accuracy,
-                "the budget of " + std::to_string(options.budget) + " cells, or points, is used up",
-                "give more by --budget");
+std::vector<Problem> problems_of_width(const Scene& scene, const matrix::Matrix& matrix,
+                                       const ViewFactorOptions& options) {
+  std::vector<Problem> problems;
+  for (const Limit limit : {Limit::kBudget, Limit::kCrowd, Limit::kRounding, Limit::kNone}) {
+    const std::vector<Wide> wide = wide_entries(scene, matrix, limit);
+    if (wide.empty()) continue;
+    problems.push_back({.what = words_of_wide(scene, matrix, wide, options.accuracy),
+                        .why = why(limit, options.budget) + "; their bounds are as strong as their claims",
+                        .suggestion = what_helps(limit, options.certify)});
+  }
+  return problems;
 }
 
-void warn_of_width(const matrix::Matrix& draft, const matrix::DraftOptions& options) {
-  warn_of_width(draft, options.accuracy, "a row has some " + std::to_string(options.views) + " views",
-                "give more views by --views");
+std::vector<Problem> problems_of_width(const Scene& scene, const matrix::Matrix& draft,
+                                       const matrix::DraftOptions& options) {
+  const std::vector<Wide> wide = wide_entries(scene, draft, Limit::kBudget);
+  if (wide.empty()) return {};
+  return {Problem{
+      .what = words_of_wide(scene, draft, wide, options.accuracy),
+      .why = "a row has some " + std::to_string(options.views) + " views; their bounds are as strong as their claims",
+      .suggestion = "give more views by --views, or ask for less by --accuracy"}};
 }
 
 }  // namespace exactff::cli

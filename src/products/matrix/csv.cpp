@@ -68,7 +68,7 @@ void add_csv_row(std::string& text, const std::string& from, std::string_view to
                  std::optional<double> area_to) {
   text::CsvRow(text) << from << to << f.value << f.lower << f.upper << to_string(f.claim) << to_string(f.way)
                      << std::string_view(f.accurate ? "yes" : "no") << f.area_from << area_to << f.cells
-                     << f.event_cells;
+                     << f.event_cells << to_string(f.limit);
 }
 
 std::string csv_text(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options) {

@@ -11,7 +11,7 @@
 namespace exactff::matrix {
 
 inline constexpr std::string_view kColumns =
-    "from,to,factor,lower,upper,claim,way,accurate,area_from,area_to,cells,event_cells";
+    "from,to,factor,lower,upper,claim,way,accurate,area_from,area_to,cells,event_cells,limit";
 
 // The columns besides patches.
 struct Surroundings {

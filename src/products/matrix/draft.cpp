@@ -222,6 +222,7 @@ void judge(ViewFactor& f, double area_from, double area_to, double accuracy) {
   f.area_to = area_to;
   const double width = f.upper - f.lower;
   f.accurate = std::max(width, area_to > 0.0 ? width * area_from / area_to : 0.0) <= accuracy;
+  f.limit = f.accurate ? Limit::kNone : Limit::kBudget;
 }
 
 void require_whole_patches(const Scene& scene, std::span<const Selection> to) {

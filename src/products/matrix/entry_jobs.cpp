@@ -24,6 +24,7 @@ void take_work(ViewFactor& sum, const ViewFactor& f) {
   sum.claim = weaker(sum.claim, f.claim);
   sum.way = std::max(sum.way, f.way);
   sum.accurate = sum.accurate && f.accurate;
+  if (sum.limit == Limit::kNone) sum.limit = f.limit;
   sum.cells += f.cells;
   sum.event_cells += f.event_cells;
 }
@@ -56,6 +57,15 @@ void clamp(ViewFactor& sum) {
   sum.value = std::clamp(sum.value, sum.lower, sum.upper);
 }
 
+// Also where rows are equal, and so one pair gives several entries.
+ViewFactor factor_of(const view_factors::Pairs& pairs, std::size_t entry) {
+  ViewFactor result;
+  pairs.compute(pairs.pair_of(entry), [&](std::size_t of, const ViewFactor& f) {
+    if (of == entry) result = f;
+  });
+  return result;
+}
+
 ViewFactorOptions options_beside(const Options& options) {
   ViewFactorOptions result = options.factors;
   result.budget = std::min(result.budget, options.budget_beside);
@@ -81,7 +91,8 @@ EntryJobs::EntryJobs(const Scene& scene, std::span<const Selection> from, std::s
   }
   if (options.open) {
     with_sky_ = with_sky(scene);
-    to_sky_.emplace(with_sky_->scene, of_any_scene(from), std::span(&with_sky_->sky, 1), options_beside(options));
+    to_sky_.emplace(with_sky_->scene, of_any_scene(from), std::span(&with_sky_->sky, 1), options_beside(options),
+                    view_factors::Columns::kSurroundings);
   }
 }
 
@@ -104,8 +115,8 @@ ViewFactor EntryJobs::factor_to_backs(std::size_t row) const {
   ViewFactor sum;
   for (std::size_t part = 0; part < parts_.size(); ++part) {
     const bool is_fronts = with_backs_->fronts && parts_[part] == *with_backs_->fronts;
-    to_backs_->compute(row * parts_.size() + part,
-                       [&](std::size_t, const ViewFactor& f) { is_fronts ? subtract(sum, f) : add(sum, f); });
+    const ViewFactor f = factor_of(*to_backs_, row * parts_.size() + part);
+    is_fronts ? subtract(sum, f) : add(sum, f);
   }
   clamp(sum);
   sum.area_from = pairs_.area_from(row);  // also if there is no back
@@ -123,10 +134,10 @@ void EntryJobs::compute(std::size_t job, const std::function<void(std::size_t, c
   const std::size_t further = job - pairs_.count(), row = further % from_.size();
   if (to_backs_ && further < from_.size()) {
     take(entries.front(), factor_to_backs(row));
-  } else if (to_sky_->is_enclosed(row)) {
+  } else if (pairs_.is_enclosed(row)) {
     take(entries.front(), {.area_from = pairs_.area_from(row)});
   } else {
-    to_sky_->compute(row, [&](std::size_t, const ViewFactor& f) { take(entries.front(), f); });
+    take(entries.front(), factor_of(*to_sky_, row));
   }
 }
 

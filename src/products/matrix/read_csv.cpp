@@ -42,6 +42,7 @@ class TableReader {
     area_to_ = column("area_to");
     claim_ = column("claim");
     way_ = csv_.column("way");
+    limit_ = csv_.column("limit");
     accurate_ = column("accurate");
   }
 
@@ -107,6 +108,7 @@ class TableReader {
                     "write yes or no");
     }
     f.accurate = accurate == "yes";
+    if (limit_) f.limit = known<Limit>("limit", csv_.field(*limit_));
   }
 
   template <class Word>
@@ -157,7 +159,7 @@ class TableReader {
   Table table_;
   std::vector<Row> rows_;
   std::size_t from_ = 0, to_ = 0, area_to_ = 0, claim_ = 0, accurate_ = 0;
-  std::optional<std::size_t> way_;
+  std::optional<std::size_t> way_, limit_;
   std::array<std::size_t, kNumbers.size()> numbers_{};
   std::size_t width_ = 1;    // entries of a row
   std::size_t patches_ = 1;  // those to patches

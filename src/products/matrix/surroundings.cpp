@@ -94,8 +94,9 @@ SceneWithBacks with_backs(const Scene& scene) {
   return {copy.take(), backs, both, fronts};
 }
 
-// The tetrahedron with corners c + s (1, 1, 1), c + s (1, -1, -1), ... holds the cube of half side s / 3 about c.
+// Not much larger than the scene, so that bounds of roundings, which go by the largest coordinate, stay as small.
 SceneWithSky with_sky(const Scene& scene) {
+  constexpr double kWider = 1.25;  // roundings do not matter
   std::array<double, 3> centre{};
   double half = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -104,20 +105,24 @@ SceneWithSky with_sky(const Scene& scene) {
     centre[axis] = 0.5 * at(low) + 0.5 * at(high);
     half = std::max(half, 0.5 * at(high) - 0.5 * at(low));
   }
-  const double s = std::ldexp(1.0, std::ilogb(half) + 6);  // 32 half sides or more: roundings do not matter
   SceneCopy copy(scene);
   const Selection sky = copy.add_patch("sky");
-  std::array<std::uint32_t, 4> corners{};
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Vec3 corner{centre[0] + (i < 2 ? s : -s), centre[1] + (i % 2 == 0 ? s : -s),
-                      centre[2] + (i == 0 || i == 3 ? s : -s)};
+  std::array<std::uint32_t, 8> corners{};  // the bits of their number tell on which sides they lie
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto at = [&](std::size_t axis) {
+      return centre[axis] + ((i >> axis & 1) != 0 ? kWider * half : -kWider * half);
+    };
+    const Vec3 corner{at(0), at(1), at(2)};
     if (!std::isfinite(corner.x) || !std::isfinite(corner.y) || !std::isfinite(corner.z)) {
       text::refuse("the scene is too large for a sky around it", "doubles end near 1.8e308", "scale the scene down");
     }
     corners[i] = copy.add_vertex(corner);
   }
-  for (const std::array<std::size_t, 3>& f : {std::array<std::size_t, 3>{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}) {
-    copy.add_face(sky, {corners[f[0]], corners[f[1]], corners[f[2]]});
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t one = std::size_t{1} << (axis + 1) % 3, two = std::size_t{1} << (axis + 2) % 3,
+                      far = std::size_t{1} << axis;
+    copy.add_face(sky, {corners[0], corners[one], corners[one + two], corners[two]});
+    copy.add_face(sky, {corners[far], corners[far + two], corners[far + one + two], corners[far + one]});
   }
   return {copy.take(), sky};
 }

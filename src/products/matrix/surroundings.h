@@ -19,7 +19,7 @@ struct SceneWithBacks {
 
 struct SceneWithSky {
   Scene scene;
-  Selection sky;  // a tetrahedron around everything; its fronts look inward
+  Selection sky;  // a cube around everything; its fronts look inward
 };
 // Throws InputError if the scene is so large that there is no double to put a corner at.
 [[nodiscard]] SceneWithSky with_sky(const Scene& scene);

@@ -20,6 +20,10 @@ const Edge& previous(const Ring& ring, std::size_t i) { return ring[(i + ring.si
 
 CellView::CellView(const Sight& sight, PairMemory& memory, std::size_t id) : sight_(sight), memory_(memory), id_(id) {
   for (const Occluder& occluder : sight.occluders) reversed_.push_back(reverse_of(occluder.ring));
+  if (!sight.is_of_open()) return;
+  for (PointId p = 0; p < sight.points.point_count(); ++p) {
+    in_plane_.push_back(side_of(sight.receiver, sight.points[p]) == 0);
+  }
 }
 
 void CellView::start() {
@@ -143,8 +147,10 @@ bool CellView::sort_out(Candidate& candidate) {
   if (facing == kUnasked || facing == kMixed) facing = static_cast<std::int8_t>(sign_inside(*occluder.plane, *cell_));
   bool beside = facing == 0 || is_beside(sight_.source, occluder.ring);
   if (!beside && facing != kMixed) {
-    beside = is_beside(ring_of(candidate), sight_.source);
-    if (!beside && holds(ring_of(candidate), sight_.source)) return true;
+    if (!sight_.is_of_open()) {
+      beside = is_beside(ring_of(candidate), sight_.source);
+      if (!beside && holds(ring_of(candidate), sight_.source)) return true;
+    }
     beside = beside || is_spare_back(candidate);
   }
   doubts_.clear();
@@ -429,11 +435,44 @@ std::size_t CellView::count_events(const Cell& cell, const Candidates& candidate
   return count;
 }
 
+bool CellView::is_on_horizon(const Edge& edge) const { return in_plane_[edge.from] && in_plane_[edge.to]; }
+
+// Of an end of a part on the horizon: the same for the same direction, as far as it is a vertex in the receiver's
+// plane, or an end of a line there.
+std::pair<PointId, LineId> CellView::place_on_horizon(const End& end) const {
+  if (!end.line) return {end.vertex, 0};
+  const Line& line = sight_.points.line(*end.line);
+  if (in_plane_[line.a] != in_plane_[line.b]) return {in_plane_[line.a] ? line.a : line.b, 0};
+  return {static_cast<PointId>(-1), *end.line};
+}
+
+// Shadows lie above the horizon, so its parts follow one another in one sense and have no directions in common.
+void CellView::look_at_horizon() {
+  has_horizon_ = true;
+  std::map<std::pair<PointId, LineId>, std::pair<PointId, LineId>> next;
+  for (const BoundaryPart& part : parts_) {
+    if (is_on_horizon(part.edge)) next.emplace(place_on_horizon(part.from), place_on_horizon(part.to));
+  }
+  if (next.empty()) return;
+  const auto start = next.begin()->first;
+  auto at = start;
+  for (std::size_t i = 0; i < next.size(); ++i) {
+    const auto found = next.find(at);
+    if (found == next.end()) return;
+    at = found->second;
+    if (at == start && i + 1 < next.size()) return;
+  }
+  if (at != start) return;
+  has_horizon_ = false;
+  std::erase_if(parts_, [&](const BoundaryPart& part) { return is_on_horizon(part.edge); });
+}
+
 CellView::Outcome CellView::look(const Cell& cell, std::size_t depth, Candidates& candidates) {
   memory_.enter(depth);
   cell_ = &cell;
   candidates_ = &candidates;
   parts_.clear();
+  has_horizon_ = false;
   best_cut_.reset();
   best_balance_ = -1.0;
   doubts_.clear();
@@ -449,6 +488,7 @@ CellView::Outcome CellView::look(const Cell& cell, std::size_t depth, Candidates
   if (best_cut_ != nullptr) return Outcome::kCut;
   if (depth <= top_ + 1) drop_covered(candidates);
   if (!look_at_edges()) return Outcome::kCut;
+  if (sight_.is_of_open()) look_at_horizon();
   return best_cut_ != nullptr ? Outcome::kCut : !triples_.empty() ? Outcome::kCrossings : Outcome::kKnown;
 }
 

@@ -20,6 +20,11 @@
 // edge counts; of two occluders on the same side of their common edge the first one counts, and on opposite sides
 // neither does.
 //
+// What is open. Without a source, the region is all directions above the horizon without the shadows. Its boundary
+// consists of such parts of the occluders' edges and of the horizon. Where a shadow reaches the horizon, its occluder
+// has an edge in the receiver's plane. If these parts follow one another once around, no horizon bounds the region, and
+// they are left out.
+//
 // Arcs. An edge is seen under less than 180 degrees, and all lies in the closed half-space in front of the receiver.
 // Edges in the receiver's plane are all seen along the horizon, where two edges may face each other from opposite
 // sides. So an arc (a, b) is intersected with an arc (p, q) of the same great circle by asking which ends lie in the
@@ -31,6 +36,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "view_factors/event_bound.h"
@@ -85,6 +91,8 @@ class CellView {
   [[nodiscard]] Candidates all_candidates() const;
 
   [[nodiscard]] const std::vector<BoundaryPart>& parts() const { return parts_; }
+  // Whether all of the horizon bounds the region, too; parts() then has the edges on it that take off some.
+  [[nodiscard]] bool has_horizon() const { return has_horizon_; }
   // Of all planes that decide more, the one that halves the cell best; the first of equal ones. Where very many signs
   // have been asked for, of those that were found by then.
   [[nodiscard]] const std::shared_ptr<const Plane>& best_cut() const { return best_cut_; }
@@ -140,6 +148,9 @@ class CellView {
   std::optional<Ahead> look_ahead(const Edge& edge, const End& at);
   [[nodiscard]] bool emit_uncovered(const Edge& edge, int sign);
   void find_all_undecided(const Edge& edge);
+  [[nodiscard]] bool is_on_horizon(const Edge& edge) const;
+  [[nodiscard]] std::pair<PointId, LineId> place_on_horizon(const End& end) const;
+  void look_at_horizon();
   void consider_cut(const std::shared_ptr<const Plane>& plane);
   void consider_doubts();
 
@@ -148,6 +159,7 @@ class CellView {
   std::size_t id_;
   std::size_t top_ = 0;         // depth of the first cells that are looked at
   std::vector<Ring> reversed_;  // of every occluder
+  std::vector<bool> in_plane_;  // of the receiver, by point; only if there is no source
 
   const Cell* cell_ = nullptr;
   const Candidates* candidates_ = nullptr;
@@ -157,6 +169,7 @@ class CellView {
   double best_balance_ = -1.0;
   std::vector<Interval> intervals_;  // of the edge that is looked at: the one inside the source, then covered ones
   std::vector<BoundaryPart> parts_;
+  bool has_horizon_ = false;
   std::vector<CrossingTriple> triples_;
   std::map<CrossingTriple, int> orders_;  // of ascending lines, that have been asked for
 };

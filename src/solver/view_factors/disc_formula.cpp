@@ -57,7 +57,7 @@ DiscVec unit_normal(const Plane& plane) {
 }
 
 DiscFormula::DiscFormula(const Formula& formula, const Cell& cell)
-    : origin_(enclose(cell.corners[0])), normal_(unit_normal(formula.receiver())) {
+    : origin_(enclose(cell.corners[0])), normal_(unit_normal(formula.receiver())), constant_(formula.constant()) {
   DiscVec sum;
   for (const Point& corner : cell.corners) {
     corners_.push_back(enclose(corner) - origin_);
@@ -164,7 +164,7 @@ Disc DiscFormula::term(const Part& part, const Disc& s, const Disc& t) const {
 }
 
 Disc DiscFormula::value(const Disc& s, const Disc& t) const {
-  Disc sum;
+  Disc sum{constant_, 0.0};
   for (const Part& part : parts_) {
     const Disc one = term(part, s, t);
     if (!is_finite(one)) return kernel::disc::kFailed;

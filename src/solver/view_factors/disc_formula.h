@@ -101,6 +101,7 @@ class DiscFormula {
   DiscVec a_, b_, c_;
   Bilinear jacobian_;
   std::vector<Part> parts_;
+  double constant_;
   std::vector<Crossing> crossings_;
 };
 

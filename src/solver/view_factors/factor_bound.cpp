@@ -48,8 +48,9 @@ std::vector<Vec3> part_in_front(std::span<const Vec3> ring, const Plane& plane) 
 
 }  // namespace
 
-FactorBound::FactorBound(const Sight& sight)
-    : FactorBound(corners_of(sight), sight.points.plane_of(sight.source), sight.receiver) {}
+FactorBound::FactorBound(const Sight& sight) {
+  if (!sight.is_of_open()) *this = {corners_of(sight), sight.points.plane_of(sight.source), sight.receiver};
+}
 
 FactorBound::FactorBound(std::span<const Vec3> source, const Plane& source_plane, const Plane& receiver)
     : source_plane_(source_plane), area_(area({source.begin(), source.end()})) {
@@ -60,6 +61,7 @@ FactorBound::FactorBound(std::span<const Vec3> source, const Plane& source_plane
 }
 
 double FactorBound::on(std::span<const Vec3> corners) const {
+  if (area_ == kAnyArea) return 1.0;
   Box box;
   double height = 0.0;
   for (const Vec3& corner : corners) {

@@ -35,6 +35,7 @@ namespace exactff::view_factors {
 
 class FactorBound {
  public:
+  // Without a source, of what is open: 1.
   explicit FactorBound(const Sight& sight);
   // Of the convex source in this plane, for points in the receiver's plane.
   FactorBound(std::span<const Vec3> source, const Plane& source_plane, const Plane& receiver);
@@ -45,9 +46,11 @@ class FactorBound {
   [[nodiscard]] double on(std::span<const Vec3> corners) const;
 
  private:
+  static constexpr double kAnyArea = Box::kInfinity;
+
   Plane source_plane_;
   Box source_;
-  double area_ = 0.0, height_ = 0.0;  // of the source; above the receiver's plane
+  double area_ = kAnyArea, height_ = 0.0;  // of the source; above the receiver's plane
 };
 
 class OpenFactorBound {

@@ -28,8 +28,8 @@ BallPoint ball_point(const Point& point, long bits) {
   return {coordinate(0), coordinate(1), coordinate(2)};
 }
 
-Formula::Formula(const Sight& sight, const std::vector<BoundaryPart>& parts)
-    : points_(sight.points), receiver_(sight.receiver), exact_parts_(parts) {
+Formula::Formula(const Sight& sight, const std::vector<BoundaryPart>& parts, bool has_horizon)
+    : points_(sight.points), receiver_(sight.receiver), exact_parts_(parts), constant_(has_horizon ? 1.0 : 0.0) {
   const Vec3 n{receiver_.rounded[0], receiver_.rounded[1], receiver_.rounded[2]};
   normal_ = kernel::scaled(n, 1.0 / length(n));
   const auto segment = [&](PointId a, PointId b) {
@@ -49,6 +49,8 @@ Formula::Formula(const Sight& sight, const std::vector<BoundaryPart>& parts)
 
 void Formula::at(std::span<const Vec3> points, std::span<Evaluated> values) const {
   evaluate(parts_, normal_, points, values);
+  if (constant_ == 0.0) return;
+  for (Evaluated& one : values) one = {one.value + constant_, one.rounding + 0x1p-52};
 }
 
 Evaluated Formula::at(const Vec3& x) const {
@@ -88,7 +90,8 @@ Ball Formula::at(const BallPoint& x) const {
     const Ball term = atan2(dot(cross(p, q), plane) / size, dot(p, q)) * dot(plane, normal) / size;
     sum = part.sign > 0 ? sum - term : sum + term;
   }
-  return sum / (length(normal) * twice(kernel::pi(bits)));
+  const Ball value = sum / (length(normal) * twice(kernel::pi(bits)));
+  return constant_ == 0.0 ? value : value + kernel::to_ball(constant_, bits);
 }
 
 }  // namespace exactff::view_factors

@@ -22,7 +22,7 @@ struct BallPoint {
 class Formula {
  public:
   // Keeps a reference to the points.
-  Formula(const Sight& sight, const std::vector<BoundaryPart>& parts);
+  Formula(const Sight& sight, const std::vector<BoundaryPart>& parts, bool has_horizon = false);
 
   // In double. The rounding is large where edges almost meet the point, or hide one another but for a sliver.
   void at(std::span<const Vec3> points, std::span<Evaluated> values) const;
@@ -36,6 +36,8 @@ class Formula {
   [[nodiscard]] const Points& points() const { return points_; }
   [[nodiscard]] const Plane& receiver() const { return receiver_; }
   [[nodiscard]] const std::vector<BoundaryPart>& boundary() const { return exact_parts_; }
+  // What the parts are added to: 1 for the whole horizon.
+  [[nodiscard]] double constant() const { return constant_; }
   [[nodiscard]] bool is_in_receiver_plane(std::size_t part) const { return in_receiver_plane_[part] != 0; }
 
  private:
@@ -45,6 +47,7 @@ class Formula {
   std::vector<QuickPart> parts_;
   std::vector<std::uint8_t> in_receiver_plane_;  // by part
   Vec3 normal_;                                  // of the receiver, of length 1
+  double constant_;
 };
 
 }  // namespace exactff::view_factors

@@ -179,7 +179,7 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enou
   kernel::poll();
   ++cells_made_;
   const CellView::Outcome outcome = view(cell, depth, candidates);
-  if (outcome == CellView::Outcome::kKnown && view_.parts().empty()) return;
+  if (outcome == CellView::Outcome::kKnown && view_.parts().empty() && !view_.has_horizon()) return;
   if (size_of(cell) <= limits_.negligible_area) {
     add_dark(std::move(cell), std::move(candidates), view_.way(depth), nullptr, shares);
     shares.back().next = Share::Next::kNextStage;
@@ -187,7 +187,8 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enou
   }
   switch (outcome) {
     case CellView::Outcome::kKnown:
-      return add_smooth(std::move(cell), std::make_shared<const Formula>(sight_, view_.parts()), HUGE_VAL, shares);
+      return add_smooth(std::move(cell), std::make_shared<const Formula>(sight_, view_.parts(), view_.has_horizon()),
+                        HUGE_VAL, shares);
     case CellView::Outcome::kCrossings:
       return add_event(std::move(cell), depth, std::move(candidates), std::vector(view_.triples()), shares);
     case CellView::Outcome::kCut:
@@ -309,7 +310,7 @@ void Pair::add_event(Cell cell, std::size_t depth, Candidates candidates, const 
   const Cell at_centre{{centre}, {}};
   Candidates of_centre = candidates;
   (void)view(at_centre, depth + 1, of_centre);  // at a single point every sign is known
-  const Formula formula(sight_, view_.parts());
+  const Formula formula(sight_, view_.parts(), view_.has_horizon());
   const Integral found = certifies() ? enclose_event(formula, cell, centre, candidates, triples)
                                      : integrate_event(formula, cell, centre, candidates, triples);
   shares.push_back({.cell = std::move(cell),

@@ -29,6 +29,9 @@ class PairChoice {
   // the two do not see each other.
   [[nodiscard]] std::unique_ptr<Pair> choose(std::span<const std::uint32_t> pieces, const PairEnd& from,
                                              const PairEnd& to);
+  // What the pieces leave open of all directions; `whole`: a source all around the scene.
+  [[nodiscard]] std::unique_ptr<Pair> of_open(std::span<const std::uint32_t> pieces, const Part& receiver,
+                                              std::shared_ptr<const ExactSource> whole);
 
  private:
   [[nodiscard]] std::unique_ptr<Pair> make(std::span<const std::uint32_t> pieces, const PairEnd& receiver,

@@ -44,18 +44,20 @@ bool may_see(const SeenParts& seen, const PreparedPatch& from, const PreparedPat
 
 struct Pairs::Patches {
   // Selections of the given scene, in a copy of it.
-  Patches(const Scene& given, std::span<const Selection> from, std::span<const Selection> to)
+  Patches(const Scene& given, std::span<const Selection> from, std::span<const Selection> to, Columns what)
       : moved(near_origin(given)), scene(moved ? *moved : given), seen(scene) {
-    rows = prepare(given, from);
-    columns = prepare(given, to);
+    rows = prepare(given, from, false);
+    columns = prepare(given, to, what == Columns::kSurroundings);
   }
 
-  std::vector<const PreparedPatch*> prepare(const Scene& given, std::span<const Selection> patches) {
+  std::vector<const PreparedPatch*> prepare(const Scene& given, std::span<const Selection> patches, bool surround) {
     std::vector<const PreparedPatch*> result;
     for (const Selection& patch : patches) {
       (void)given.faces_of(patch);  // throws if it is of another scene
       std::unique_ptr<const PreparedPatch>& known = prepared[key_of(patch)];
-      if (known == nullptr) known = std::make_unique<const PreparedPatch>(scene, Selection{patch.patch, patch.face});
+      if (known == nullptr) {
+        known = std::make_unique<const PreparedPatch>(scene, Selection{patch.patch, patch.face}, surround);
+      }
       result.push_back(known.get());
     }
     return result;
@@ -72,10 +74,10 @@ struct Pairs::Patches {
 };
 
 Pairs::Pairs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
-             const ViewFactorOptions& options)
+             const ViewFactorOptions& options, Columns what)
     : options_(options) {
   check_accuracy(options.accuracy);
-  patches_ = std::make_unique<const Patches>(scene, from, to);
+  patches_ = std::make_unique<const Patches>(scene, from, to, what);
   std::map<std::pair<Key, Key>, std::size_t> known;
   for (std::size_t e = 0; e < from.size() * to.size(); ++e) {
     const Ends ends = ends_of(e);
@@ -83,6 +85,7 @@ Pairs::Pairs(const Scene& scene, std::span<const Selection> from, std::span<cons
         known.try_emplace({key_of(ends.from->selection), key_of(ends.to->selection)}, entries_.size());
     if (is_new) entries_.emplace_back();
     entries_[place->second].push_back(e);
+    pair_of_.push_back(place->second);
   }
 }
 Pairs::~Pairs() = default;

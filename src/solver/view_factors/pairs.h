@@ -15,11 +15,19 @@ namespace exactff::view_factors {
 
 struct PreparedPatch;
 
+// What the columns are.
+enum class Columns {
+  kPatches,
+  // Each is a patch whose fronts lie all around the scene and look inward, at infinity as it were, and that hides
+  // nothing. The factor to it is what the occluders leave of all directions.
+  kSurroundings,
+};
+
 class Pairs {
  public:
   // Throws what view_factor throws. Keeps a reference to the scene.
   Pairs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
-        const ViewFactorOptions& options);
+        const ViewFactorOptions& options, Columns what = Columns::kPatches);
   ~Pairs();
   Pairs(const Pairs&) = delete;
   Pairs& operator=(const Pairs&) = delete;
@@ -27,6 +35,8 @@ class Pairs {
   [[nodiscard]] std::size_t count() const { return entries_.size(); }
   // The entries that a pair gives, numbered row by row, in ascending order: equal ones, and transposes.
   [[nodiscard]] const std::vector<std::size_t>& entries_of(std::size_t pair) const { return entries_[pair]; }
+  // That gives the entry.
+  [[nodiscard]] std::size_t pair_of(std::size_t entry) const { return pair_of_[entry]; }
   [[nodiscard]] double area_from(std::size_t row) const;
   // Whether closed surfaces stand around all that the row's patch sees (enclosures.h), if that can be proved.
   [[nodiscard]] bool is_enclosed(std::size_t row) const;
@@ -44,7 +54,8 @@ class Pairs {
 
   const ViewFactorOptions options_;
   std::unique_ptr<const Patches> patches_;
-  std::vector<std::vector<std::size_t>> entries_;
+  std::vector<std::vector<std::size_t>> entries_;  // by pair
+  std::vector<std::size_t> pair_of_;               // by entry
 };
 
 }  // namespace exactff::view_factors

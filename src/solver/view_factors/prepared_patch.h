@@ -12,7 +12,7 @@ namespace exactff::view_factors {
 
 struct PreparedPatch {
   // Throws InputError for a patch without area.
-  PreparedPatch(const ExactScene& scene, const Selection& patch);
+  PreparedPatch(const ExactScene& scene, const Selection& patch, bool surrounds_scene);
 
   Selection selection;
   std::vector<Part> parts;
@@ -20,6 +20,7 @@ struct PreparedPatch {
   double unit_area = 0.0;      // in squares of the unit of Point::at
   kernel::Disc enclosed_area;  // the same
   bool planar = true;          // all of its faces
+  bool surrounds;              // whatever meets nothing else meets one of its fronts (Columns::kSurroundings)
   SeenParts::OfPatch seen;
 };
 

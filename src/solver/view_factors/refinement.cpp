@@ -33,29 +33,39 @@ Refinement::Refinement(const ExactScene& scene, const SeenParts& seen, const Pre
       smaller_area_(std::min(from.unit_area, to.unit_area)),
       least_error_(0.5 * options.accuracy * smaller_area_ / (4.0 * static_cast<double>(options.budget))),
       narrowest_(widened(0.5 * from.enclosed_area, 0.5 * magnitude(from.enclosed_area))) {
-  PairChoice choice(scene, memory, is_symmetric(from, to, options));
-  const std::vector<PairEnd> receivers = ends_of(scene.scene, from), sources = ends_of(scene.scene, to);
-  std::size_t points = 0;
-  for (std::size_t r = 0; r < receivers.size(); ++r) {
-    for (std::size_t s = 0; s < sources.size(); ++s) {
-      const bool may_see =
-          from.seen.sees(seen, from.parts, r, to.parts[s]) && to.seen.sees(seen, to.parts, s, from.parts[r]);
-      if (!may_see) continue;
-      std::unique_ptr<Pair> pair =
-          choice.choose(from.seen.lists(seen, from.parts)[r].occluders, receivers[r], sources[s]);
-      if (pair == nullptr) continue;
-      points += pair->point_count();
-      if (points > kMostPoints) {
-        give_up();
-        return;
-      }
-      add_pair(std::move(pair));
-    }
-  }
+  look_at_pairs(scene, seen, memory);
   narrow();
 }
 
-void Refinement::add_pair(std::unique_ptr<Pair> pair) {
+void Refinement::look_at_pairs(const ExactScene& scene, const SeenParts& seen, PairMemory& memory) {
+  PairChoice choice(scene, memory, is_symmetric(from_, to_, options_));
+  const std::vector<PairEnd> receivers = ends_of(scene.scene, from_);
+  const auto occluders = [&](std::size_t r) { return std::span(from_.seen.lists(seen, from_.parts)[r].occluders); };
+  if (to_.surrounds) {
+    const auto whole = std::make_shared<const ExactSource>(scene.scene, to_.selection);
+    for (std::size_t r = 0; r < receivers.size(); ++r) {
+      if (!add_pair(choice.of_open(occluders(r), receivers[r].part, whole))) return;
+    }
+    return;
+  }
+  const std::vector<PairEnd> sources = ends_of(scene.scene, to_);
+  for (std::size_t r = 0; r < receivers.size(); ++r) {
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      const bool may_see =
+          from_.seen.sees(seen, from_.parts, r, to_.parts[s]) && to_.seen.sees(seen, to_.parts, s, from_.parts[r]);
+      if (may_see && !add_pair(choice.choose(occluders(r), receivers[r], sources[s]))) return;
+    }
+  }
+}
+
+// False if there are too many corners to go on.
+bool Refinement::add_pair(std::unique_ptr<Pair> pair) {
+  if (pair == nullptr) return true;
+  points_ += pair->point_count();
+  if (points_ > kMostPoints) {
+    give_up();
+    return false;
+  }
   pair->set_limits(limits());
   pairs_.push_back(std::move(pair));
   const std::size_t made = made_;
@@ -63,6 +73,7 @@ void Refinement::add_pair(std::unique_ptr<Pair> pair) {
   work_on(pairs_.size() - 1,
           [&](Pair& p) { return may_work() ? p.cells(kCoarse * smaller_area_, left) : p.without_cells(); });
   if (made_ == made) pairs_.back().reset();
+  return true;
 }
 
 // Some pairs are left out, so the shares of the others tell nothing.

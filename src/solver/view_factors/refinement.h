@@ -49,6 +49,10 @@ class Refinement {
   [[nodiscard]] std::size_t cells() const { return cells_; }
   [[nodiscard]] std::uint64_t effort() const { return effort_; }  // as Pair::effort
   [[nodiscard]] std::size_t event_cells() const;
+  // What ended it, if the integral is not known well enough.
+  [[nodiscard]] Limit limit() const {
+    return gave_up_ ? Limit::kCrowd : cost_ >= options_.budget ? Limit::kBudget : Limit::kRounding;
+  }
 
  private:
   struct Waiting {
@@ -60,7 +64,8 @@ class Refinement {
     return a.share.error != b.share.error ? a.share.error < b.share.error : a.number > b.number;
   }
 
-  void add_pair(std::unique_ptr<Pair> pair);
+  void look_at_pairs(const ExactScene& scene, const SeenParts& seen, PairMemory& memory);
+  [[nodiscard]] bool add_pair(std::unique_ptr<Pair> pair);
   void give_up();
   [[nodiscard]] bool pauses() const { return options_.sample_crowds && !options_.certify; }
   [[nodiscard]] Pair::Budget budget_left() const;
@@ -85,6 +90,7 @@ class Refinement {
   std::vector<std::unique_ptr<Pair>> pairs_;  // null: sees nothing
   std::vector<Waiting> waiting_;              // a heap
   std::vector<Waiting> settled_;              // cannot be improved in this stage
+  std::size_t points_ = 0;                    // of all pairs of parts
   std::size_t stage_ = 0;
   double running_error_ = 0.0;
   std::size_t made_ = 0;  // shares

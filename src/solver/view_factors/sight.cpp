@@ -40,6 +40,23 @@ class Maker {
     return std::move(sight_);
   }
 
+  Sight make_of_open(const Part& receiver_part) {
+    Points& points = sight_.points;
+    const Ring receiver = add(receiver_part);
+    corners_of_parts_ = static_cast<PointId>(points.point_count());
+    sight_.receiver = points.plane_of(receiver);
+    sight_.root = cell_of(points, receiver, sight_.receiver);
+    include(receiver, receiver_box_);
+    add_occluders();
+    for (const Occluder& occluder : sight_.occluders) {
+      for (const Edge& edge : occluder.ring) {
+        if (side_of(sight_.receiver, points[edge.from]) > 0) sight_.apex = edge.from;
+      }
+    }
+    points.complete();
+    return std::move(sight_);
+  }
+
  private:
   Ring add(const Part& part) {
     std::vector<PointId> corners;
@@ -80,12 +97,13 @@ class Maker {
   // plane.
   [[nodiscard]] bool may_lie_between(const ExactPiece& piece) const {
     if (piece.transparent || piece.face == own_) return false;
-    if (piece.box.is_apart_from(between_) || shaft_->is_outside(piece.box)) return false;
+    if (shaft_ && (piece.box.is_apart_from(between_) || shaft_->is_outside(piece.box))) return false;
     const auto has_corner_before = [&](const Plane& plane) {
       return std::ranges::any_of(piece.corners,
                                  [&](std::uint32_t corner) { return side_of(plane, scene_.vertices[corner]) > 0; });
     };
-    return separates_pair(piece.plane) && has_corner_before(sight_.receiver) && has_corner_before(source_plane_);
+    if (!has_corner_before(sight_.receiver)) return false;
+    return !shaft_ || (separates_pair(piece.plane) && has_corner_before(source_plane_));
   }
 
   // Otherwise, almost no segment between the two crosses the plane.
@@ -112,7 +130,7 @@ class Maker {
   }
 
   [[nodiscard]] bool may_be_solid(const ExactSurface& surface) const {
-    return (surface.box.is_apart_from(source_box_) || stands_on_source(surface)) &&
+    return (!shaft_ || surface.box.is_apart_from(source_box_) || stands_on_source(surface)) &&
            (surface.box.is_apart_from(receiver_box_) || lies_before(surface, sight_.receiver));
   }
 
@@ -171,7 +189,7 @@ class Maker {
     Points& points = sight_.points;
     const Ring above = points.clip(ring_of(piece), sight_.receiver, kByReceiver);
     if (above.empty()) return;
-    Ring ring = points.clip(above, source_plane_, kBySource);
+    Ring ring = shaft_ ? points.clip(above, source_plane_, kBySource) : above;
     if (!ring.empty()) sight_.occluders.push_back({std::move(ring), &piece.plane, solid(piece.surface)});
   }
 
@@ -181,7 +199,7 @@ class Maker {
   Sight sight_;
   Plane source_plane_;
   Box receiver_box_, source_box_, between_;
-  std::optional<PairShaft> shaft_;
+  std::optional<PairShaft> shaft_;  // if there is a source
   PointId corners_of_parts_ = std::numeric_limits<PointId>::max();
   std::map<std::uint32_t, PointId> vertex_;
   std::map<std::uint32_t, std::uint32_t> solid_of_;  // by surface
@@ -203,6 +221,10 @@ std::vector<FaceId> faces_of(const Scene& scene, const Part& part) {
 std::optional<Sight> sight_of(const ExactScene& scene, std::span<const std::uint32_t> pieces, const Part& receiver,
                               const Part& source, FaceId own) {
   return Maker(scene, pieces, own).make(receiver, source);
+}
+
+Sight sight_of_open(const ExactScene& scene, std::span<const std::uint32_t> pieces, const Part& receiver, FaceId own) {
+  return Maker(scene, pieces, own).make_of_open(receiver);
 }
 
 }  // namespace exactff::view_factors

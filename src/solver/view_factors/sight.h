@@ -14,6 +14,8 @@
 //
 // The receiver's own face does not occlude. If it belongs to S, its piece is a base that holds every x, and nothing is
 // left out. For a surface that is turned inside out, all this holds with fronts and backs exchanged.
+//
+// Of what is open, y is so far away that w(y) is 0.
 #pragma once
 
 #include <cstdint>
@@ -42,7 +44,8 @@ struct Solid {
   std::vector<Ring> bases;  // in the receiver's plane, counter-clockwise as seen from its front
 };
 
-// A receiver's points see a source's points if the segment between them meets no occluder. Refers to the scene.
+// A receiver's points see a source's points, or all that lies in a direction, if the segment between them meets no
+// occluder. Refers to the scene.
 struct Sight {
   explicit Sight(const Units& units) : points(units) {}
 
@@ -52,7 +55,10 @@ struct Sight {
   Ring source;     // the part of the source in front of the receiver's plane, counter-clockwise as seen from there
   std::vector<Occluder> occluders;  // the parts in front of both planes
   std::vector<Solid> solids;
-  PointId apex = 0;  // a point of the source off the receiver's plane
+  PointId apex = 0;  // a point in front of the receiver's plane, of the source if there is one
+
+  // What the occluders leave open of all directions is asked for: there is no source.
+  [[nodiscard]] bool is_of_open() const { return source.empty(); }
 };
 
 // A convex part of a patch: corners counter-clockwise as seen from the front, none in the middle of a straight side.
@@ -71,5 +77,8 @@ struct Part {
 // not occlude. `pieces`: all that may occlude, by ascending index (seen_parts.h).
 [[nodiscard]] std::optional<Sight> sight_of(const ExactScene& scene, std::span<const std::uint32_t> pieces,
                                             const Part& receiver, const Part& source, FaceId own);
+// Of all directions in front of the receiver.
+[[nodiscard]] Sight sight_of_open(const ExactScene& scene, std::span<const std::uint32_t> pieces, const Part& receiver,
+                                  FaceId own);
 
 }  // namespace exactff::view_factors

@@ -173,6 +173,7 @@ class Search {
       result.value = std::clamp(cells_.estimate() / from_.unit_area, result.lower, result.upper);
     }
     result.accurate = cells_.is_zero() || is_accurate(result);
+    if (!result.accurate) result.limit = result.way == Way::kPoints ? Limit::kBudget : cells_.limit();
     result.cells = cells_.cells();
     result.event_cells = cells_.event_cells();
     return result;
@@ -191,7 +192,7 @@ class Search {
 }  // namespace
 
 bool is_symmetric(const PreparedPatch& i, const PreparedPatch& j, const ViewFactorOptions& options) {
-  return i.planar && j.planar && !options.both_directions;
+  return i.planar && j.planar && !j.surrounds && !options.both_directions;
 }
 
 ViewFactor factor_between(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from,
@@ -237,6 +238,20 @@ std::string_view to_string(Way way) {
       return "points";
     case Way::kViews:
       return "views";
+  }
+  return {};
+}
+
+std::string_view to_string(Limit limit) {
+  switch (limit) {
+    case Limit::kNone:
+      return "none";
+    case Limit::kBudget:
+      return "budget";
+    case Limit::kCrowd:
+      return "crowd";
+    case Limit::kRounding:
+      return "rounding";
   }
   return {};
 }

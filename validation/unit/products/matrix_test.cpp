@@ -473,6 +473,39 @@ TEST_F(MatrixFilesOfTheCommand, OfOverlappingFrontsAreWrittenOnlyByForce) {
   EXPECT_EQ(told, "");
 }
 
+// Equal rows are one pair.
+TEST_F(MatrixFilesOfTheCommand, HasARowTwiceIfItIsAskedFor) {
+  const std::string scene = EXACTFF_DATA_DIR "/scenes/slats.obj";
+  const auto twice =
+      run({scene, "--from", "lamp,lamp", "--to", "floor,sky", "--backs", "--accuracy", "0.01", "--plain"});
+  const auto once = run({scene, "--from", "lamp", "--to", "floor,sky", "--backs", "--accuracy", "0.01", "--plain"});
+  EXPECT_EQ(twice.exit_code, 0);
+  EXPECT_EQ(twice.output, once.output + once.output);
+}
+
+// Wider entries are named, with the reason and what would help; a file keeps the reason.
+TEST_F(MatrixFilesOfTheCommand, TellsWhyEntriesAreWider) {
+  std::string told;
+  const auto command = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = {"matrix", EXACTFF_DATA_DIR "/scenes/cornell_box.obj", "--from", "light", "--to"};
+    all.insert(all.end(), more.begin(), more.end());
+    const validation::RunningProgram program(EXACTFF_PROGRAM, all, folder_.path() / "told");
+    const int exit_code = program.wait();
+    told = program.error();
+    return exit_code;
+  };
+  EXPECT_EQ(command({"floor,tall_block", "--budget", "1", "--certify", "-o", file("m.csv")}), 0) << told;
+  EXPECT_EQ(told.find("warning: 2 entries are wider than the accuracy 1e-06: 'light' to '"), 0U) << told;
+  EXPECT_NE(told.find(" (the limit of work for an entry, 1 cell and as many points, is reached; their bounds are as "
+                      "strong as their claims); give more by --budget, ask for less by --accuracy, divide patches by "
+                      "--divide, or take estimates instead of --certify\n"),
+            std::string::npos)
+      << told;
+  for (const ViewFactor& f : read_csv(file("m.csv")).entries) EXPECT_EQ(f.limit, Limit::kBudget);
+  EXPECT_EQ(command({"floor", "--accuracy", "0.1"}), 0);
+  EXPECT_EQ(told, "");
+}
+
 // A draft's bounds of a row, or those of a coarse matrix, may reach beyond 1, which no row does.
 TEST_F(MatrixFilesOfTheCommand, ShowsNoSumAboveOneThatCannotBe) {
   const std::string room = EXACTFF_DATA_DIR "/scenes/cornell_box.obj";

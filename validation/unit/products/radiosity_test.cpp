@@ -334,6 +334,24 @@ TEST_F(RadiosityCommand, PrintsABalanceThatIsPossible) {
   }
 }
 
+TEST_F(RadiosityCommand, TakesAFinishedMatrixOfTheSameScene) {
+  const std::string scene = write(plates());
+  const auto command = [](std::vector<std::string> words) {
+    return validation::run_program(EXACTFF_PROGRAM, std::move(words));
+  };
+  const auto matrix = [&](const std::string& to, const std::string& name) {
+    return command({"matrix", scene, "--accuracy", "1e-3", "--backs", "--to", to, "-o", file(name.c_str())}).exit_code;
+  };
+  EXPECT_EQ(matrix("all,sky", "m.csv"), 0);
+  EXPECT_EQ(matrix("all", "less.csv"), 0);
+  const auto taken = command({"radiosity", scene, "--matrix", file("m.csv"), "--csv"});
+  EXPECT_EQ(taken.exit_code, 0) << taken.output;
+  EXPECT_EQ(taken.output, run(scene, {"--csv"}).output);
+  EXPECT_EQ(command({"radiosity", scene, "--matrix", file("less.csv")}).exit_code, 2);
+  EXPECT_EQ(command({"radiosity", scene, "--matrix", file("m.csv"), "--divide", "0.5"}).exit_code, 2);
+  EXPECT_EQ(command({"radiosity", scene, "--matrix", file("m.csv"), "--accuracy", "1e-3"}).exit_code, 2);
+}
+
 // The plate above, alone and turned round, shines from its back.
 TEST_F(RadiosityCommand, BacksOfTwoSidedPatchesEmit) {
   const std::string scene = write(plates());

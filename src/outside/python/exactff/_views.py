@@ -149,8 +149,8 @@ def _budget(budget: int) -> int:
 
 def _warn_of_width(wide: int, accuracy: float, budget: int) -> None:
     if wide:
-        warn(f"{wide} view factor{'s are' if wide > 1 else ' is'} wider than the accuracy {accuracy:g} (the budget of "
-             f"{budget} cells, or points, is used up; intervals are as strong as their claims)")
+        warn(f"{wide} view factor{'s are' if wide > 1 else ' is'} wider than the accuracy {accuracy:g} (the limit of work "
+             f"for an entry, {budget} cells and as many points, or roundings; intervals are as strong as their claims)")
 
 
 def view_factor(scene: Scene, a: str, b: str, accuracy: float = 1e-6, *, budget: int = 100_000,
@@ -161,8 +161,8 @@ def view_factor(scene: Scene, a: str, b: str, accuracy: float = 1e-6, *, budget:
     ----------
     a, b : names of patches or faces, ``NAME`` or ``NAME:k``
     accuracy : the largest width ``upper - lower``, for the factor and for the one from `b` to `a`
-    budget : the largest number of cells, and of points; where it is used up, a ModellingWarning says so and the result
-        keeps its width
+    budget : the limit of work for an entry: the most cells, where one with many edges counts for several, and the most
+        points; where it is reached, a ModellingWarning says so and the result keeps its width
     certify : prove the quadrature, too: the claim is "certified" or "zero"
 
     Raises InputError for unknown names and for patches without area. The GIL is released, and Ctrl-C answered.
