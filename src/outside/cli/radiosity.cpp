@@ -306,8 +306,8 @@ int run(const RadiosityArguments& args) {
   }
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
-  const matrix::Matrix matrix =
-      matrix::compute(scene, patches, patches, radiosity::matrix_options({args.factors, args.threads}), hooks);
+  const matrix::Matrix matrix = matrix::compute(
+      scene, patches, patches, radiosity::matrix_options({args.factors, args.threads}, patches.size()), hooks);
   Solution solution = radiosity::solve(scene, matrix);
   radiosity::set_variation(scene, solution, args.threads, hooks);
   bar.clear();
