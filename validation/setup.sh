@@ -71,8 +71,9 @@ set_not_installed() {
     dpkg-query --show --showformat='${db:Status-Status}\n' "$package" 2> /dev/null | grep -qx installed || result+=("$package")
   done
 }
-# A name of another release has no candidate.
-is_offered() { LC_ALL=C apt-cache policy "$1" | grep -q '^  Candidate: [^(]'; }
+# A name of another release has no candidate. `grep -q` would not do: it may end before apt-cache has written all, which
+# pipefail takes for a failure.
+is_offered() { [[ "$(LC_ALL=C apt-cache policy "$1")" == *"  Candidate: "[!\(]* ]]; }
 # Not on a fresh system, which has no lists of packages.
 knows_offers() { [ -n "$(apt-cache madison libflint-dev)" ]; }
 

@@ -138,6 +138,39 @@ TEST(VertexGradient, IsTheSlopeOfTheValuesInEveryFamily) {
   EXPECT_GT(2 * met.sharp, met.kinks);  // most of them are true ones along one of the directions
 }
 
+// A square light of two triangles before the receiver, and a triangle through its plane, or with a corner in it.
+PlainScene pierced_light(Random& random) {
+  const auto eighths = [&](int low, int high) { return random.integer(8 * low, 8 * high) / 8.0; };
+  PlainScene plain;
+  plain.vertices = {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}};
+  plain.patch(plain.source).faces = {{{{0, 1, 2}}}, {{{0, 2, 3}}}};
+  const double middle = random.one_in(3) ? 2.0 : eighths(1, 3);
+  for (const double z : {eighths(0, 2) + 1.0 / 64, middle, eighths(2, 4) + 1.0 / 64}) {
+    plain.vertices.push_back({eighths(-1, 1) + 1.0 / 256, eighths(-1, 1), z});
+  }
+  plain.patch("occluder").faces = {{{{4, 5, 6}}}};
+  plain.point = {eighths(-1, 1) / 8 + 1.0 / 512, eighths(-1, 1) / 8, 0.0};
+  plain.normal = {eighths(-1, 1), 0.0, 2.0};
+  return plain;
+}
+
+// Each triangle of the light moves by itself, although both lie in one plane.
+TEST(VertexGradient, IsTheSlopeWhereALightOfTwoTrianglesIsPierced) {
+  Met met;
+  for (std::uint64_t i = 0; i < scaled_count(40); ++i) {
+    Random random(seed_of(7000 + i));
+    const PlainScene made = pierced_light(random);
+    if (!has_only_area(made)) continue;
+    const PlainScene plain = around(made, made.vertices[random.below(made.vertices.size())]);
+    const std::optional<double> step = step_for(plain);
+    if (!step || !has_only_area(plain)) continue;
+    SCOPED_TRACE(std::to_string(i) + '\n' + generate::to_obj(plain));
+    expect_true_slopes(plain, *step, met);
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(met.moving, 10U);
+}
+
 TEST(VertexGradient, BothEnginesAgreeInEveryFamily) {
   for (const RandomFamily& family : random_families()) {
     for (std::uint64_t i = 0; i < scaled_count(5); ++i) {

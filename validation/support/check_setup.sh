@@ -13,7 +13,8 @@ fail() {
   exit 1
 }
 
-# Offered is what `lists` names, after `apt-get update` what `archive` names; installed is what `installed` names.
+# Offered is what `lists` names, after `apt-get update` what `archive` names; installed is what `installed` names. The
+# table of versions is longer than a pipe holds, so that a reader that ends early is noticed.
 mkdir "$work/bin"
 cat > "$work/bin/dpkg-query" << 'END'
 #!/bin/bash
@@ -23,7 +24,7 @@ cat > "$work/bin/apt-cache" << 'END'
 #!/bin/bash
 case "$1 $(grep -cx "$2" "$FAKE/lists")" in
   "madison 1") echo " $2 | 1.0 | http://example.org main" ;;
-  "policy 1") printf '%s:\n  Installed: (none)\n  Candidate: 1.0\n' "$2" ;;
+  "policy 1") printf '%s:\n  Installed: (none)\n  Candidate: 1.0\n  Version table:\n%100000s\n' "$2" "" || exit 100 ;;
   "policy 0") [[ $2 != libflint* ]] || printf '%s:\n  Installed: (none)\n  Candidate: (none)\n' "$2" ;;
 esac
 END

@@ -66,6 +66,15 @@ Ball ball_around(double hi, double lo, double error) {
   return result;
 }
 
+// The sums with hi round numbers that are no larger than the least one, and no smaller than the largest; and rounding
+// is monotone.
+std::optional<double> nearest_around(double hi, double lo, double error) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const double first = hi + std::nextafter(lo - error, -kInfinity), last = hi + std::nextafter(lo + error, kInfinity);
+  if (first == last && first != 0.0 && std::isfinite(first)) return first;
+  return std::nullopt;
+}
+
 double nearest_to_midpoint(const Ball& ball) { return arf_get_d(arb_midref(ball.get()), ARF_RND_NEAR); }
 
 long certain_bits(const Ball& ball) { return arb_rel_accuracy_bits(ball.get()); }

@@ -8,6 +8,7 @@
 #include <arb.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "exactff/enclosure.h"
@@ -100,6 +101,8 @@ Ball pi(long bits);
 Ball with_bits(Ball ball, long bits);
 // Contains every number within `error` of hi + lo; the error may be infinite.
 Ball ball_around(double hi, double lo, double error);
+// The double nearest to every number within `error` of hi + lo, if that is one for all of them and not 0.
+std::optional<double> nearest_around(double hi, double lo, double error);
 
 // The double nearest to the midpoint of the ball: an estimate of the enclosed number.
 double nearest_to_midpoint(const Ball& ball);

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <stdexcept>
 
@@ -188,7 +189,7 @@ class Solver {
     for (std::size_t p = 0; p < planes_.size(); ++p) {
       PlaneVisibility seen = find(planes_[p]);
       if (wants_gradient_) {
-        memory_.gradient->add({view_, planes_[p], request_}, seen);
+        memory_.gradient->add({view_, planes_[p], request_}, seen.boundary);
       } else {
         memory_.quick.add(seen.boundary);
       }
@@ -237,7 +238,8 @@ class Solver {
     gradient.certify(options_.precision_cap, *result_.gradient);
   }
 
-  // The boundary is found once more, from pieces, since panels may lack vertices that move it.
+  // The boundary is found once more, from pieces, since panels may lack vertices that move it; and face by face, since
+  // each face of the source moves with its own vertices.
   void find_vertices() {
     Gradient& result = *result_.gradient;
     if (result.kink) return;
@@ -245,8 +247,11 @@ class Solver {
     gradient::VertexGradient& vertices = *memory_.vertices;
     const visibility::BoundaryRequest request{
         .engine = options_.engine, .only_occluders = options_.only_occluders, .by_pieces = true};
+    std::vector<SourcePlane> planes;
+    for (const SourcePlane& plane : planes_)
+      std::ranges::move(split_by_face(scene_, plane), std::back_inserter(planes));
     const auto for_each_plane = [&](const auto& add) {
-      for (const SourcePlane& plane : planes_) {
+      for (const SourcePlane& plane : planes) {
         const PlaneVisibility seen = find_visible_boundary(view_, plane, request, memory_.edges);
         add(visibility::PlaneQuery{view_, plane, request}, seen.boundary);
       }

@@ -12,6 +12,16 @@ bool is_determined(const Ball& ball, Derivative& result) {
   return true;
 }
 
+bool is_determined(double hi, double lo, double error, Derivative& result) {
+  const Ball ball = kernel::ball_around(hi, lo, error);
+  const std::optional<double> nearest = kernel::nearest_around(hi, lo, error);
+  if (!nearest) return is_determined(ball, result);
+  EnclosureInside::set(result.enclosure, ball);
+  result.value = *nearest;
+  result.status = DerivativeStatus::kCertified;
+  return true;
+}
+
 void set_zero(Derivative& result) {
   result = {};
   EnclosureInside::set(result.enclosure, Ball());

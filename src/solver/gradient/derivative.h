@@ -16,6 +16,8 @@ inline constexpr int kQuickBits = 106;  // of double-double
 
 // Takes the double from a ball, unless it contains 0. False if the ball does not determine it.
 [[nodiscard]] bool is_determined(const Ball& ball, Derivative& result);
+// Of a number within `error` of hi + lo.
+[[nodiscard]] bool is_determined(double hi, double lo, double error, Derivative& result);
 void set_zero(Derivative& result);
 void set_none(Derivative& result);
 

@@ -15,7 +15,6 @@ using contour::MovingArc;
 using kernel::ExactVec3;
 using kernel::RationalVec3;
 using visibility::PlaneQuery;
-using visibility::PlaneVisibility;
 using visibility::VisibleBoundary;
 
 void PointGradient::start(const visibility::View& view, const Request& request) {
@@ -33,11 +32,11 @@ void PointGradient::start(const visibility::View& view, const Request& request) 
   contour_arcs_.clear();
 }
 
-void PointGradient::add(const PlaneQuery& query, const PlaneVisibility& seen) {
-  something_visible_ = something_visible_ || !seen.boundary.empty();
-  quick_.add(query, seen.boundary);
+void PointGradient::add(const PlaneQuery& query, const VisibleBoundary& boundary) {
+  something_visible_ = something_visible_ || !boundary.empty();
+  quick_.add(query, boundary);
   if (kink_ && !along_) return;
-  search_.find(query, seen, along_ ? KinkSearch::Extent::kAll : KinkSearch::Extent::kFirst);
+  search_.find(query, !boundary.empty(), along_ ? KinkSearch::Extent::kAll : KinkSearch::Extent::kFirst);
   if (search_.kink() && (!kink_ || search_.kink()->reason == KinkReason::kOnFace)) kink_ = search_.kink();
   if (along_) kinks_.push_back(search_.planes());
 }
@@ -70,7 +69,7 @@ bool PointGradient::finish(int cap, Gradient& result) {
   const auto take = [&](const contour::QuickGradient::Value& value, Derivative& derivative) {
     if (!something_visible_) {
       set_zero(derivative);
-    } else if (!quick || !is_determined(kernel::ball_around(value.hi, value.lo, value.error), derivative)) {
+    } else if (!quick || !is_determined(value.hi, value.lo, value.error, derivative)) {
       derivative.status = DerivativeStatus::kEnclosed;  // so far
       done = false;
     }

@@ -21,8 +21,8 @@ class PointGradient {
   };
   // Starts a new one.
   void start(const visibility::View& view, const Request& request);
-  // Takes one plane and what was seen of it.
-  void add(const visibility::PlaneQuery& query, const visibility::PlaneVisibility& seen);
+  // Takes one plane with its visible boundary.
+  void add(const visibility::PlaneQuery& query, const visibility::VisibleBoundary& boundary);
 
   // Encloses F, by the sums for V. Requires that something is visible.
   [[nodiscard]] Ball form_factor() const;

@@ -16,7 +16,6 @@ using visibility::EdgeId;
 using visibility::OutlineId;
 using visibility::Outlines;
 using visibility::PlaneQuery;
-using visibility::PlaneVisibility;
 
 void KinkSearch::note(KinkReason reason, const Scene& scene, std::span<const std::uint32_t> pieces) {
   if (kink_) return;
@@ -26,7 +25,7 @@ void KinkSearch::note(KinkReason reason, const Scene& scene, std::span<const std
   kink_->faces.erase(std::unique(kink_->faces.begin(), kink_->faces.end()), kink_->faces.end());
 }
 
-void KinkSearch::find(const PlaneQuery& query, const PlaneVisibility& seen, Extent extent) {
+void KinkSearch::find(const PlaneQuery& query, bool is_visible, Extent extent) {
   kink_.reset();
   planes_.clear();
   judged_.clear();
@@ -36,7 +35,7 @@ void KinkSearch::find(const PlaneQuery& query, const PlaneVisibility& seen, Exte
   const bool is_own = std::ranges::all_of(plane.pieces, [&](std::uint32_t p) { return view.is_own(pieces[p].face); });
   if (is_own) return;
   const int side = side_of(plane, view.x);
-  if (side > 0) find_around_source(query, seen, extent);
+  if (side > 0) find_around_source(query, is_visible, extent);
   if (side == 0) find_edge_on(query);
 }
 
@@ -85,7 +84,7 @@ void KinkSearch::find_edge_on(const PlaneQuery& query) {
 
 // --- The source before x ---
 
-void KinkSearch::find_around_source(const PlaneQuery& query, const PlaneVisibility& seen, Extent extent) {
+void KinkSearch::find_around_source(const PlaneQuery& query, bool is_visible, Extent extent) {
   visibility::BoundaryRequest request = query.request;
   request.culling = ShaftCulling::kTree;
   const PlaneQuery closed{query.view, query.plane, request};
@@ -93,9 +92,8 @@ void KinkSearch::find_around_source(const PlaneQuery& query, const PlaneVisibili
   profile_.gather(closed);
   if (profile_.source_count() == 0 || profile_.stays_hidden()) return;
   const std::optional<std::uint32_t>& touching = profile_.touching();
-  if (!touching || seen.boundary.empty()) {
-    groups_.clear();
-    groups_.add_open_edges(profile_.outlines(), profile_.source_count());
+  if (!(touching && is_visible)) {
+    find_open_edges();
     if (judge_sheets(closed, extent)) static_cast<void>(judge_groups(closed, extent));
     if (!(touching && kink_)) return;
   }
@@ -103,10 +101,34 @@ void KinkSearch::find_around_source(const PlaneQuery& query, const PlaneVisibili
   note(KinkReason::kOnFace, query.view.scene, std::span(&*touching, 1));
 }
 
+// 2. Edges without a piece on both sides, in the order of their numbers.
+void KinkSearch::find_open_edges() {
+  const Outlines& outlines = profile_.outlines();
+  const auto edges = outlines.edges();
+  sides_.assign(edges.size(), 0);
+  table_.clear(std::max<std::size_t>(edges.size(), 1));
+  const EdgeId first_occluder = profile_.source_count() < outlines.outlines().size()
+                                    ? outlines.outline(static_cast<OutlineId>(profile_.source_count())).first
+                                    : static_cast<EdgeId>(edges.size());
+  groups_.clear();
+  for (EdgeId id = 0; id < first_occluder; ++id) groups_.add(outlines, id);
+  for (EdgeId id = first_occluder; id < edges.size(); ++id) {
+    const EdgeId first = table_.add(id, edges);
+    sides_[first] = static_cast<std::uint8_t>(sides_[first] | (edges[first].a == edges[id].a ? 1U : 2U));
+  }
+  for (EdgeId id = first_occluder; id < edges.size(); ++id) {
+    if (sides_[id] == 1) groups_.add(outlines, id);
+  }
+}
+
 // 3. and 4. False: stopped.
 bool KinkSearch::judge_groups(const PlaneQuery& query, Extent extent) {
-  return groups_.for_each(profile_.outlines(), [&](std::span<const EdgeId> group) {
-    if (!are_on_one_line(profile_.outlines(), group)) judge(query, profile_.outlines().edge(group.front()), extent);
+  Outlines& outlines = profile_.outlines();
+  const kernel::Approx3 n{query.view.n.x, query.view.n.y, query.view.n.z};
+  return groups_.for_each(outlines, [&](std::span<const EdgeId> group) {
+    const Outlines::Edge edge = outlines.edge(group.front());
+    const bool is_on_horizon = outlines.side_by_filter(n, edge.a) == 0 && outlines.side_by_filter(n, edge.b) == 0;
+    if (!is_on_horizon && !are_on_one_line(outlines, group)) judge(query, edge, extent);
     return !(kink_ && extent == Extent::kFirst);
   });
 }

@@ -22,6 +22,14 @@ constexpr std::uint32_t kPiecesPerPoll = 1'024;
 
 }  // namespace
 
+// Of one outline of the source, with what looks at pieces in it.
+struct Profile::Shaft {
+  const PlaneQuery& query;
+  PieceClip& clip;
+  visibility::SourceShaft& sides;
+  OutlineId source = 0;
+};
+
 void Profile::start() {
   pieces_.clear();
   sheets_.clear();
@@ -40,31 +48,38 @@ void Profile::gather(const PlaneQuery& query, Extent extent) {
     if (pieces_.size() < source_count_) pieces_.push_back(piece);
   }
   seen_.clear(query.view.scene.pieces().size());
-  visibility::SourceShaft shaft(query, clip, outlines_, shaft_);
+  visibility::SourceShaft sides(query, clip, outlines_, shaft_);
   std::uint32_t visited = 0;
   for (OutlineId source = 0; source < source_count_ && !stays_hidden_; ++source) {
-    shaft.set(source);
-    for_each_candidate(query.view, shaft.half_spaces(), ShaftCulling::kTree, [&](std::uint32_t index, bool /*inside*/) {
+    sides.set(source);
+    Shaft shaft{query, clip, sides, source};
+    for_each_candidate(query.view, sides.half_spaces(), ShaftCulling::kTree, [&](std::uint32_t index, bool inside) {
       if (++visited % kPiecesPerPoll == 0) kernel::poll();
       if (!seen_.is_set(index) && may_occlude(query.view, query.plane, query.request, index)) {
-        visit(query, clip, index, source);
+        visit(shaft, index, inside);
       }
       return !stays_hidden_;
     });
   }
 }
 
-void Profile::visit(const PlaneQuery& query, PieceClip& clip, std::uint32_t index, OutlineId source) {
+// `inside`: the piece lies inside the shaft.
+void Profile::visit(Shaft& shaft, std::uint32_t index, bool inside) {
+  const PlaneQuery& query = shaft.query;
   const Piece& piece = query.view.scene.pieces()[index];
-  clip.take(query.view.scene.corners(piece));
-  if (is_beside(source, clip.corners())) return;
+  shaft.clip.take(query.view.scene.corners(piece));
+  const visibility::Sides sides = inside ? visibility::kInsideShaft : shaft.sides.sides_by_filter();
+  if (sides.beside || (!sides.certain && is_beside(shaft.source, shaft.clip.corners()))) return;
   seen_.set(index);
-  const std::span<const int> depths = clip.find_depths();
-  const bool some_before = std::ranges::any_of(depths, [](int depth) { return depth > 0; });
-  const bool some_behind = std::ranges::any_of(depths, [](int depth) { return depth < 0; });
+  bool some_before = sides.certain && sides.some_above_each, some_behind = sides.some_below_first;
   if (!some_before) {
-    if (with_meeting_ && std::ranges::count(depths, 0) > 1) meeting_.push_back(index);
-    return;
+    const std::span<const int> depths = shaft.clip.find_depths();
+    some_before = std::ranges::any_of(depths, [](int depth) { return depth > 0; });
+    some_behind = std::ranges::any_of(depths, [](int depth) { return depth < 0; });
+    if (!some_before) {
+      if (with_meeting_ && std::ranges::count(depths, 0) > 1) meeting_.push_back(index);
+      return;
+    }
   }
   const int facing = facing_of(query.view, piece);
   if (facing == 0) {
@@ -72,7 +87,7 @@ void Profile::visit(const PlaneQuery& query, PieceClip& clip, std::uint32_t inde
     if (!touching_ && holds_x(query.view, piece)) touching_ = index;
     return;
   }
-  const OutlineId outline = clip.add_occluder(some_behind, facing);
+  const OutlineId outline = shaft.clip.add_occluder(some_behind, facing);
   pieces_.push_back(index);
   stays_hidden_ = hides_more(outline);
 }

@@ -45,8 +45,8 @@ class Profile {
 
  private:
   void start();
-  void visit(const visibility::PlaneQuery& query, visibility::PieceClip& clip, std::uint32_t index,
-             visibility::OutlineId source);
+  struct Shaft;
+  void visit(Shaft& shaft, std::uint32_t index, bool inside);
   [[nodiscard]] bool is_beside(visibility::OutlineId source, std::span<const visibility::CornerId> corners) const;
   [[nodiscard]] bool hides_more(visibility::OutlineId occluder);
 

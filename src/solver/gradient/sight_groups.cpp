@@ -1,6 +1,5 @@
 #include "gradient/sight_groups.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -10,7 +9,6 @@
 namespace exactff::gradient {
 
 using visibility::EdgeId;
-using visibility::OutlineId;
 using visibility::Outlines;
 
 namespace {
@@ -36,23 +34,6 @@ void SightGroups::add(const Outlines& outlines, EdgeId id) {
   }
 }
 
-void SightGroups::add_open_edges(const Outlines& outlines, std::size_t source_outlines) {
-  const auto edges = outlines.edges();
-  sides_.assign(edges.size(), 0);
-  table_.clear(std::max<std::size_t>(edges.size(), 1));
-  const EdgeId first_occluder = source_outlines < outlines.outlines().size()
-                                    ? outlines.outline(static_cast<OutlineId>(source_outlines)).first
-                                    : static_cast<EdgeId>(edges.size());
-  for (EdgeId id = 0; id < first_occluder; ++id) add(outlines, id);
-  for (EdgeId id = first_occluder; id < edges.size(); ++id) {
-    const EdgeId first = table_.add(id, edges);
-    sides_[first] = static_cast<std::uint8_t>(sides_[first] | (edges[first].a == edges[id].a ? 1U : 2U));
-  }
-  for (EdgeId id = first_occluder; id < edges.size(); ++id) {
-    if (sides_[id] == 1) add(outlines, id);
-  }
-}
-
 bool are_on_one_line(const Outlines& outlines, std::span<const EdgeId> group) {
   const auto ends_of = [&](EdgeId id) {
     const Outlines::Edge& edge = outlines.edge(id);
@@ -65,7 +46,8 @@ bool are_on_one_line(const Outlines& outlines, std::span<const EdgeId> group) {
   return std::ranges::all_of(group, [&](EdgeId id) {
     const auto [a, b] = ends_of(id);
     const auto is_on_line = [&](std::uint32_t v) {
-      return is_zero(cross(along, kernel::exact_difference(outlines.position(v), origin).v));
+      return v == *ends.first || v == *ends.second ||
+             is_zero(cross(along, kernel::exact_difference(outlines.position(v), origin).v));
     };
     return a && b && is_on_line(*a) && is_on_line(*b);
   });

@@ -3,13 +3,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "kernel/poll.h"
 #include "visibility/outlines.h"
-#include "visibility/visible_edges.h"
 
 namespace exactff::gradient {
 
@@ -22,8 +20,6 @@ class SightGroups {
  public:
   void clear() { entries_.clear(); }
   void add(const visibility::Outlines& outlines, visibility::EdgeId id);
-  // Adds the edges of the source, and those of occluders without an occluder on both sides, which would cover them.
-  void add_open_edges(const visibility::Outlines& outlines, std::size_t source_outlines);
   // Calls visit(group) for every plane with at least `least` edges, until one call returns false, which is returned.
   template <class Visit>
   bool for_each(visibility::Outlines& outlines, const Visit& visit, std::size_t least = 2);
@@ -35,8 +31,6 @@ class SightGroups {
     bool done = false;
   };
   std::vector<Entry> entries_;
-  visibility::EdgeTable table_;
-  std::vector<std::uint8_t> sides_;  // by edge: 1 if a piece lies on its left, 2 if on its right
   std::vector<visibility::EdgeId> group_;
 };
 
@@ -45,7 +39,8 @@ bool SightGroups::for_each(visibility::Outlines& outlines, const Visit& visit, s
   std::ranges::sort(entries_,
                     [](const Entry& p, const Entry& q) { return p.low != q.low ? p.low < q.low : p.edge < q.edge; });
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (entries_[i].done) continue;
+    const bool is_alone = i + 1 == entries_.size() || entries_[i + 1].low > entries_[i].high;
+    if (entries_[i].done || (is_alone && least > 1)) continue;
     const visibility::Outlines::Edge edge = outlines.edge(entries_[i].edge);
     group_.assign(1, entries_[i].edge);
     for (std::size_t j = i + 1; j < entries_.size() && entries_[j].low <= entries_[i].high; ++j) {

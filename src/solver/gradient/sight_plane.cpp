@@ -39,9 +39,10 @@ bool SightPlane::clamp(ExactVec3& from, ExactVec3& to) const {
 // --- What meets the plane ---
 
 RationalVec3 SightPlane::nearness_of(const Vec3& a, const Vec3& b, const Vec3& c) const {
-  const RationalVec3 p = to_rational(a);
-  const RationalVec3 m = cross(to_rational(b) - p, to_rational(c) - p);
-  return m * Rational(1 / dot(m, p - to_rational(query_.view.x)));
+  const ExactVec3 m = cross(kernel::exact_difference(b, a).v, kernel::exact_difference(c, a).v);
+  const kernel::ScaledVec3 arrow = kernel::exact_difference(a, query_.view.x);
+  const Rational height = kernel::times_power_of_two(Rational(dot(m, arrow.v)), arrow.exponent);
+  return to_rational(m) * Rational(1 / height);
 }
 
 // Nullopt unless the piece meets the plane along an arc.

@@ -308,8 +308,7 @@ bool VertexGradient::finish(int cap, Gradient& result) {
         continue;
       }
       const contour::QuickGradient::Value value = quick_.sum().over_turn_and_length(sums.value[axis]);
-      if (cap >= kQuickBits && is_determined(kernel::ball_around(value.hi, value.lo, value.error), derivative))
-        continue;
+      if (cap >= kQuickBits && is_determined(value.hi, value.lo, value.error, derivative)) continue;
       derivative.status = DerivativeStatus::kEnclosed;  // so far
       done = false;
     }

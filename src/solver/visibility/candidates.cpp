@@ -7,7 +7,6 @@ namespace exactff::visibility {
 namespace {
 
 constexpr std::uint64_t kCandidatesPerPoll = 1'024;
-constexpr Sides kInside{.certain = true, .some_above_each = true, .all_above_each = true};
 
 }  // namespace
 
@@ -16,7 +15,6 @@ void Candidates::start() {
   search_.seen.clear(panels_.end());
   backs_.start();
   too_many_ = false;
-  has_all_outlines_ = query_.request.notes_touching && query_.request.culls();
 }
 
 std::optional<PanelId> Candidates::gather(std::uint64_t most) {
@@ -57,15 +55,11 @@ bool Candidates::visit(PanelId panel, bool inside) {
   ++record_.tree_candidates;
   // 3. Only what enters the shaft,
   if (!inside) clip_.take(vertices);
-  const Sides sides = inside ? kInside : shaft_.sides();
-  has_all_outlines_ = has_all_outlines_ && (sides.some_above_each || sides.beside);
+  const Sides sides = inside ? kInsideShaft : shaft_.sides();
   if (!sides.some_above_each) return false;
   search_.seen.set(panel);
   const int facing = facing_of(query_.view, panels_.piece(panel));
-  if (facing == 0) {
-    has_all_outlines_ = false;
-    return false;
-  }
+  if (facing == 0) return false;
   ++record_.candidates;
   const bool left_out = backs_.is_left_out(panel, facing);
   if (left_out && sides.all_above_each) return false;

@@ -37,9 +37,6 @@ class Candidates {
   // after more than `most` candidates: see too_many().
   [[nodiscard]] std::optional<PanelId> gather(std::uint64_t most = kAny);
   [[nodiscard]] bool too_many() const { return too_many_; }
-  // Whether gather has added all that occludes and touches the closed shaft but backs that are left out, and x sees
-  // none of it edge-on; false if that is not certain. Requires that the request notes touching.
-  [[nodiscard]] bool has_all_outlines() const { return has_all_outlines_; }
   // A panel that hides all, if there is one. Looks only at those that may. Adds outlines. Requires culling.
   [[nodiscard]] std::optional<PanelId> one_that_hides_all();
 
@@ -57,7 +54,6 @@ class Candidates {
   SourceShaft shaft_;
   SurfaceBacks backs_;
   bool too_many_ = false;
-  bool has_all_outlines_ = false;
 };
 
 }  // namespace exactff::visibility

@@ -75,8 +75,6 @@ std::optional<Outcome> EdgeWalk::find_outcome() {
   // 6. Cut the edges.
   if (!hidden && !edges_.find(source_.count)) return std::nullopt;
   result_.boundary = VisibleBoundary(edges_);
-  result_.has_all_outlines = !hidden && candidates.has_all_outlines();
-  result_.source_outlines = source_.count;
   note_edges(edges_);
   if (record.candidates == 0) return Outcome::kUnoccluded;
   if (!result_.boundary.empty()) return Outcome::kPartlyHidden;

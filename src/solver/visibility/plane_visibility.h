@@ -47,7 +47,6 @@ struct BoundaryRequest {
   ShaftCulling culling = ShaftCulling::kTree;
   bool remembers_covers = false;  // see CoverMemory; the counts in the record then depend on earlier calls
   Silhouetting silhouettes = Silhouetting::kWherePromising;
-  bool notes_touching = false;       // finds PlaneVisibility::has_all_outlines
   bool by_pieces = false;            // looks at pieces even where panels join several, and gives the same region
   std::size_t fewest_to_cover = 64;  // candidates: with fewer, a search for a small cover saves nothing
 
@@ -96,10 +95,6 @@ struct PlaneVisibility {
   VisibleBoundary boundary;
   std::optional<kernel::Rational> fraction;  // visible area / whole unclipped area of the union, in [0, 1]
   Cutters cutters;                           // ascending
-  // If noted: whether the boundary's outlines are those of all that occludes and touches the closed shaft, but for
-  // left-out backs (surface_backs.h), and none of it is seen edge-on. The first `source_outlines` are the source's.
-  bool has_all_outlines = false;
-  std::size_t source_outlines = 0;
 };
 
 // For both engines: calls visit(piece, inside) for every piece that may lie in the shaft, until one call returns false;

@@ -26,8 +26,10 @@ struct Sides {
   bool all_above_each = false;          // every corner lies above every plane
   bool some_below_first = false;        // a corner lies below the first plane
   Outlines::LineBits wholly_above = 0;  // a bit for each of the first planes: all corners lie above it
-  bool beside = false;                  // every corner lies below one plane, or none above the first
+  bool beside = false;                  // every corner lies below one plane; false if that took no filter
 };
+
+inline constexpr Sides kInsideShaft{.certain = true, .some_above_each = true, .all_above_each = true};
 
 Sides sides_of(std::span<const SidePlane> planes, const FourCorners& corners);
 

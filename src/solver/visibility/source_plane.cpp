@@ -152,4 +152,35 @@ ProjectedArea union_area(const Scene& scene, const SourcePlane& plane) {
   return {doubled / 2, axis};
 }
 
+namespace {
+
+bool overlap(const Scene& scene, const SourcePlane& plane) {
+  if (certainly_do_not_overlap(plane)) return false;
+  const ProjectedArea all = union_area(scene, plane);
+  Rational sum;
+  for (const std::uint32_t piece : plane.pieces) {
+    const bool reverse = sign(plane.normal.exact[all.axis]) < 0;
+    sum += doubled_area(projected(scene, scene.corners(scene.pieces()[piece]), all.axis, reverse));
+  }
+  return sum != 2 * all.area;
+}
+
+}  // namespace
+
+std::vector<SourcePlane> split_by_face(const Scene& scene, const SourcePlane& plane) {
+  if (plane.faces.size() == 1 || overlap(scene, plane)) return {plane};
+  std::vector<SourcePlane> result;
+  for (const FaceId face : plane.faces) {
+    SourcePlane& one = result.emplace_back(plane);
+    one.faces = {face};
+    std::erase_if(one.pieces, [&](std::uint32_t piece) { return scene.pieces()[piece].face != face; });
+    one.panels = panels_of(*plane.scene_panels, one.pieces);
+    const auto& frame = scene.pieces()[one.pieces.front()].frame;
+    one.point = scene.vertices()[frame[0]];
+    one.second = scene.vertices()[frame[1]];
+    one.third = scene.vertices()[frame[2]];
+  }
+  return result;
+}
+
 }  // namespace exactff::visibility

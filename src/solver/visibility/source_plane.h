@@ -25,6 +25,9 @@ struct SourcePlane {
 // Groups faces by exact equality of their oriented planes, in order of first appearance.
 std::vector<SourcePlane> group_by_plane(const Scene& scene, const std::vector<FaceId>& faces);
 
+// The plane of each face by itself, with three vertices of that face; the plane as it is if faces overlap in it.
+std::vector<SourcePlane> split_by_face(const Scene& scene, const SourcePlane& plane);
+
 // -1, 0, +1: x behind, in, in front of the plane.
 int side_of(const SourcePlane& plane, const Vec3& x);
 

@@ -81,26 +81,19 @@ Sides SourceShaft::sides_by_filter() const {
 Sides SourceShaft::sides_exactly() {
   Sides sides{true, true, true, false, 0};
   const std::span<const CornerId> corners = clip_.corners();
-  const bool seeks_touching = query_.request.notes_touching;
   const auto look = [&](const auto& side) {  // the side of the c-th corner
-    std::size_t above = 0, below = 0;
-    for (std::size_t c = 0; c < corners.size(); ++c) {
-      const int at = side(c);
-      above += at > 0 ? 1U : 0U;
-      below += at < 0 ? 1U : 0U;
-    }
+    std::size_t above = 0;
+    for (std::size_t c = 0; c < corners.size(); ++c) above += side(c) > 0 ? 1U : 0U;
     sides.some_above_each = sides.some_above_each && above > 0;
     sides.all_above_each = sides.all_above_each && above == corners.size();
-    sides.beside = sides.beside || below == corners.size();
   };
   const std::span<const int> depths = clip_.find_depths();
   sides.some_below_first = std::ranges::any_of(depths, [](int depth) { return depth < 0; });
   look([&](std::size_t c) { return depths[c]; });
-  sides.beside = sides.beside || !sides.some_above_each;
   look([&](std::size_t c) { return clip_.toward_sign(corners[c]); });
   if (!query_.request.culls()) return sides;
   for (const Outlines::Edge& edge : edges()) {
-    if (!sides.some_above_each && (sides.beside || !seeks_touching)) break;
+    if (!sides.some_above_each) break;
     look([&](std::size_t c) { return outlines_.side(edge, corners[c]); });
   }
   return sides;

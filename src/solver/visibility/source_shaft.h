@@ -39,12 +39,13 @@ class SourceShaft {
     const Sides sides = sides_by_filter();
     return sides.certain ? sides : sides_exactly();
   }
+  // The same if doubles tell, and if it has at most four corners.
+  [[nodiscard]] Sides sides_by_filter() const;
 
  private:
   void make_half_spaces();
   void make_side_planes();
   [[nodiscard]] std::span<const Outlines::Edge> edges() const;
-  [[nodiscard]] Sides sides_by_filter() const;
   [[nodiscard]] Sides sides_exactly();
 
   const PlaneQuery& query_;

@@ -209,6 +209,29 @@ TEST(Enclosure, NearestIsUndecidedAcrossAMidpoint) {
   EXPECT_EQ(ball_of(midpoint + power_of_two(-400) / 3, 500).nearest(), 1.0 + 0x1p-52);
 }
 
+TEST(Enclosure, NearestAroundASumIsThatOfItsBall) {
+  Random random(7);
+  int decided = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double hi = random.one_in(8) ? std::ldexp(random.between(1.0, 2.0), -1070) : random.between(-2.0, 2.0);
+    const double half_ulp = 0.5 * std::abs(std::nextafter(hi, 4.0) - hi);  // 0 for the least exponents
+    const double lo = random.one_in(4) ? half_ulp : half_ulp * random.between(-1.0, 1.0);
+    const double error = random.one_in(9) ? 0.0 : half_ulp * std::ldexp(1.0, random.integer(-60, 4));
+    const std::optional<double> nearest = nearest_around(hi, lo, error);
+    const Enclosure ball = EnclosureInside::of(ball_around(hi, lo, error));
+    if (!nearest) continue;  // as it may be beside a midpoint
+    ++decided;
+    ASSERT_EQ(nearest, ball.nearest()) << hi << ' ' << lo << ' ' << error;
+    ASSERT_FALSE(ball.contains(0.0));
+  }
+  EXPECT_GE(decided, 10000);
+  EXPECT_EQ(nearest_around(1.0, 0x1p-60, 0x1p-70), 1.0);
+  EXPECT_FALSE(nearest_around(1.0, 0x1p-53, 0x1p-200));  // on both sides of a midpoint
+  EXPECT_FALSE(nearest_around(0.0, 0.0, 0.0));
+  EXPECT_FALSE(nearest_around(1.0, 0.0, std::numeric_limits<double>::infinity()));
+  EXPECT_FALSE(nearest_around(1.0, 0.0, std::numeric_limits<double>::quiet_NaN()));
+}
+
 TEST(Enclosure, EndsAreRoundedOutward) {
   const Enclosure third = ball_of(Rational(1, 3), 300);
   EXPECT_EQ(third.lower(), 1.0 / 3.0);  // 1/3 rounds down
