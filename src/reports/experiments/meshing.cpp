@@ -250,10 +250,10 @@ std::string place_sentence(const MeshingStudy& study) {
     if (level.patches[p].rms > level.patches[worst].rms) worst = p;
   }
   return "Of cells of " + fraction(level.parts) + " of the box, the tenth of the pixels with the largest errors has " +
-         percent(level.share_of_worst_tenth) + " of the squared error; the largest is on " + study.patches[worst] +
-         " (RMS " + percent(level.patches[worst].rms) +
-         "). Errors sit where surfaces meet and where blocks stand: "
-         "there the light of a near cell counts most, and varies most over it.";
+         percent(level.share_of_worst_tenth) + " of the squared error. The RMS error is largest on '" +
+         study.patches[worst] + "', " + percent(level.patches[worst].rms) +
+         ". Errors sit along edges where surfaces meet, and where a block stands before another surface: there a "
+         "near cell gives most of the light, and its own light varies most.";
 }
 
 NumberTable meshing_table(const MeshingStudy& study) {
@@ -298,7 +298,7 @@ page::Figure error_map(const MeshingLevel& level, const MeshingSize& size) {
   map.colours = page::MapColours::kDiverging;
   map.width = map.height = size.pixels;
   map.x = "column";
-  map.y = "row";
+  map.y = "row, from below";
   map.largest = level.all.p99 > 0.0 ? level.all.p99 : 1.0;
   for (std::size_t i = 0; i < level.errors.size(); ++i) {
     if (std::isnan(level.errors[i])) continue;
