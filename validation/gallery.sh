@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # gallery.sh [FOLDER]: renders the pictures of the READMEs with build/exactff (EXACTFF_BUILD names another build folder)
-# into data/pictures, or into FOLDER: 1,200 pixels wide, with 3 x 3 points a pixel; that of all light is smaller. Takes about
+# into data/pictures, or into FOLDER: 1,200 pixels wide, with 3 x 3 points a pixel; those of all light are smaller. Takes about
 # an hour on two cores, most of it for the forest. The same program gives the same bytes.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -20,8 +20,17 @@ render cornell_box_slope "${box[@]}" --size 480x480 --quantity gradient --exposu
 render cornell_box "${box[@]}" --size 1200x1200 --exposure 16
 cells=$(mktemp -d)
 trap 'rm -r "$cells"' EXIT
-"$program" radiosity "${box[0]}" --divide 140 --accuracy 1e-3 --budget 1000 -o "$cells/c140.csv" > /dev/null
-"$program" render "${box[@]}" --size 256x256 --radiosity "$cells/c140.csv" -o "$out/cornell_box_all_light.png" --force
+for length in 140 278; do
+  "$program" radiosity "${box[0]}" --divide $length --accuracy 1e-3 --budget 1000 -o "$cells/c$length.csv" > /dev/null
+done
+all() {  # LENGTH SIZE IMAGE [FLAG...]
+  local solution=$cells/c$1.csv size=$2 image=$3
+  shift 3
+  "$program" render "${box[@]}" --size "$size" --radiosity "$solution" -o "$image" --force "$@"
+}
+all 140 400x400 "$out/cornell_box_all_light.png" --exposure 16
+all 278 200x200 "$cells/c278.exr"
+all 140 200x200 "$out/cornell_box_cells.png" --against "$cells/c278.exr" --strip
 render blinds_room @room:n=12 --eye 3.9 2 3.8 --look 0.5 0.6 0.9 --fov 62 --size 1200x900 --exposure 10
 render slats data/scenes/slats.obj --eye -0.6 2.9 -1.8 --look 0.3 0 1.4 --fov 46 --size 1200x900 --exposure 40
 render closed_room @closed-room:boxes=4,seed=5 --eye 0.2 2.2 3.85 --look 3.2 1 1.3 --fov 70 --size 1200x900 --exposure 10

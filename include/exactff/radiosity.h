@@ -82,9 +82,9 @@ struct Options {
   int threads = 0;  // 0: all; does not affect the result
 };
 
-// What solve() needs to know of a scene, for matrix::compute: `back` and `open` as well, for the balance alone, and
-// therefore with at most 2,000 cells an entry.
-[[nodiscard]] matrix::Options matrix_options(const Options& options);
+// What solve() needs to know of a scene with so many patches, for matrix::compute: `back` and `open` as well, for the
+// balance alone, and therefore with few cells an entry: some 40,000 for all patches, at most 2,000 for one.
+[[nodiscard]] matrix::Options matrix_options(const Options& options, std::size_t patches);
 
 // Requires the factors between all of patches_of(scene), as rows and as columns, with `back` and `open`. Throws
 // std::invalid_argument otherwise, and what patches_of throws.

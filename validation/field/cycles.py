@@ -223,4 +223,5 @@ def main():
     cycles.close()
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -133,7 +133,7 @@ def needed_settings(job):
     scene.render.filepath = job["output"]
     scene.cycles.samples = job["samples"]
     scene.cycles.seed = job["seed"]
-    scene.cycles.max_bounces = job["bounces"]  # 0: direct light only
+    scene.cycles.max_bounces = scene.cycles.diffuse_bounces = job["bounces"]  # 0: direct light only
     scene.cycles.use_denoising = False  # the default, which would blur penumbrae; Debian's build cannot denoise
     scene.world.use_nodes = False
     scene.world.color = (0, 0, 0)  # the default world is grey and would add light

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -405,6 +406,50 @@ TEST(ViewFactors, ABoxOnTheFloorHidesTheFloorUnderIt) {
     // Of the floor, a sixteenth lies under the box and sees nothing. So does the base, a sixth of the box.
     EXPECT_LE(lower, 1.0);
     EXPECT_GE(upper + 1e-12, built.patches()[i].name == "things" ? 5.0 / 6.0 : 15.0 / 16.0);
+  }
+}
+
+// Inner edges of a mesh are not looked at, its ridges are: whether faces share vertices must not matter.
+TEST(ViewFactors, BehindAMeshAreThoseBehindItsFaces) {
+  enum class Vertices { kShared, kOfEachFace };
+  using Rings = std::vector<std::vector<Vec3>>;
+  const auto scene_of = [](const Rings& things, Vertices vertices) {
+    SceneBuilder builder;
+    const MaterialId grey = builder.add_material({});
+    std::map<std::tuple<double, double, double>, std::uint32_t> known;
+    const auto add = [&](const char* name, const std::vector<Vec3>& ring) {
+      std::vector<std::uint32_t> corners;
+      for (const Vec3& at : ring) {
+        const auto [place, is_new] = known.try_emplace({at.x, at.y, at.z}, 0);
+        if (is_new || vertices == Vertices::kOfEachFace) place->second = builder.add_vertex(at);
+        corners.push_back(place->second);
+      }
+      builder.add_face(builder.patch(name), grey, {corners});
+    };
+    add("floor", {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
+    add("ceiling", {{0, 0, 4}, {0, 4, 4}, {4, 4, 4}, {4, 0, 4}});
+    std::size_t number = 0;
+    for (const std::vector<Vec3>& ring : things) add(("thing" + std::to_string(++number)).c_str(), ring);
+    return builder.build();
+  };
+  // Two leaves that meet in the line x = 1, z = 2: both go on to larger x. Then a wavy sheet of 4 x 4 cells.
+  const Rings leaves = {{{1, 1, 2}, {3, 1, 2.5}, {3, 3, 2.5}, {1, 3, 2}},
+                        {{1, 1, 2}, {3, 1, 1.5}, {3, 3, 1.5}, {1, 3, 2}}};
+  Rings sheet;
+  const auto at = [](int i, int j) { return Vec3{0.75 + 0.5 * i, 0.75 + 0.5 * j, i % 2 == 0 ? 2.0 : 1.75}; };
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) sheet.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+  }
+  for (const Rings& things : {leaves, sheet}) {
+    const Scene mesh = scene_of(things, Vertices::kShared), faces = scene_of(things, Vertices::kOfEachFace);
+    const auto factor = [](const Scene& scene) {
+      return view_factor(scene, scene.select("floor"), scene.select("ceiling"), {.accuracy = 1e-4});
+    };
+    const ViewFactor one = factor(mesh), other = factor(faces);
+    EXPECT_LT(one.upper - one.lower, 1e-3) << things.size();
+    EXPECT_LE(one.lower, other.upper) << things.size();
+    EXPECT_LE(other.lower, one.upper) << things.size();
+    EXPECT_NEAR(one.value, other.value, 1e-4) << things.size();
   }
 }
 

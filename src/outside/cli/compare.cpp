@@ -46,7 +46,8 @@ constexpr const char* kCompareFooter =
     "\n"
     "Examples:\n"
     "  exactff compare data/scenes/cornell_box.obj --on floor --grid 32x32 -o cornell-report\n"
-    "  exactff compare data/studies/default.study --abridged -o report";
+    "  exactff compare data/studies/default.study --abridged -o report\n"
+    "  exactff compare --experiment meshing -o cells";
 
 struct CompareArguments {
   flags::ComparisonArguments scene;
@@ -64,7 +65,9 @@ struct CompareArguments {
 };
 
 std::string command_line(const CompareArguments& args) {
-  std::string line = "exactff compare " + text::shell_word(args.scene.scene.path) + flags::command_words(args.scene);
+  std::string line = "exactff compare";
+  if (const std::string& path = args.scene.scene.path; !path.empty()) line += ' ' + text::shell_word(path);
+  line += flags::command_words(args.scene);
   for (const std::string& name : args.experiments) line += " --experiment " + text::shell_word(name);
   if (args.abridged) line += " --abridged";
   if (args.threads > 0) line += " --threads " + std::to_string(args.threads);
@@ -122,7 +125,19 @@ report::Plan plan_of(const CompareArguments& args) {
   const report::Effort effort{args.abridged, args.threads};
   const std::string& path = args.scene.scene.path;
   report::Plan plan;
-  if (flags::is_study_file(path)) {
+  if (path.empty()) {
+    if (args.experiments.empty()) {
+      text::refuse("SCENE is required", "there is nothing to compare",
+                   "name a scene, a .study file or an --experiment");
+    }
+    const std::string flags = flags::command_words(args.scene);
+    if (!flags.empty()) {
+      text::refuse("flags of a scene are given without a scene:" + flags, "an experiment has scenes of its own",
+                   "name the scene, or remove the flags");
+    }
+    plan.title = "Experiments";
+    plan.effort = effort;
+  } else if (flags::is_study_file(path)) {
     const std::string flags = flags::command_words(args.scene);
     if (!flags.empty()) {
       text::refuse("flags of a scene are given with a study file:" + flags,
@@ -218,7 +233,7 @@ int run(const CompareArguments& args) {
 std::string experiment_list() {
   std::string names;
   for (const std::string& name : report::experiment_names()) names += name + ", ";
-  return names + "or all";
+  return names + "or all, which leaves out meshing-fine";
 }
 
 }  // namespace
@@ -228,8 +243,12 @@ Command add_compare(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("compare", "Compare approximate methods with the exact values: error and run time");
   args->scene.add_to(*command);
-  command->get_option("SCENE")->description(
-      "Scene file (OBJ, PLY, STL, OFF, View3D), @MODEL for a generated scene, or a .study file with several scenes");
+  command->get_option("SCENE")
+      ->description(
+          "Scene file (OBJ, PLY, STL, OFF, View3D), @MODEL for a generated scene, or a .study file with several "
+          "scenes; "
+          "not needed with --experiment")
+      ->required(false);
   command
       ->add_option("--experiment", args->experiments,
                    "Add an experiment to the report; can be repeated: " + experiment_list())

@@ -342,7 +342,8 @@ void require_matrix_of(const Scene& scene, const matrix::Table& table) {
 matrix::Matrix view_factors_of(const RadiosityArguments& args, const Scene& scene,
                                const std::vector<Selection>& patches, const Hooks& hooks, ViewFactorOptions& options) {
   if (args.matrix.empty()) {
-    return matrix::compute(scene, patches, patches, radiosity::matrix_options({options, args.threads}), hooks);
+    return matrix::compute(scene, patches, patches, radiosity::matrix_options({options, args.threads}, patches.size()),
+                           hooks);
   }
   const matrix::Table table = matrix::read_csv(args.matrix);
   require_matrix_of(scene, table);

@@ -45,12 +45,10 @@ py::list balance_of(const Solution& solution) {
   return list;
 }
 
+// Between patches; others only serve the balance.
 std::size_t wide_entries(const matrix::Matrix& matrix) {
-  std::ptrdiff_t count = 0;
-  for (const auto* list : {&matrix.factors.entries, &matrix.back, &matrix.open}) {
-    count += std::ranges::count_if(*list, [](const ViewFactor& f) { return !f.accurate; });
-  }
-  return static_cast<std::size_t>(count);
+  const auto is_wide = [](const ViewFactor& f) { return !f.accurate; };
+  return static_cast<std::size_t>(std::ranges::count_if(matrix.factors.entries, is_wide));
 }
 
 // Names, areas, quantities, reasons for no bound, claim, balance, its claim, reasons against it, wide view factors.
@@ -61,8 +59,8 @@ py::tuple radiosity_of(const SharedScene& scene, double accuracy, std::size_t bu
   std::size_t wide = 0;
   const Solution solution = interrupt.run([&] {
     const std::vector<Selection> patches = radiosity::patches_of(in);
-    const matrix::Options options =
-        radiosity::matrix_options({.factors = {.accuracy = accuracy, .budget = budget}, .threads = threads});
+    const matrix::Options options = radiosity::matrix_options(
+        {.factors = {.accuracy = accuracy, .budget = budget}, .threads = threads}, patches.size());
     const matrix::Matrix matrix = matrix::compute(in, patches, patches, options, interrupt.hooks());
     wide = wide_entries(matrix);
     return radiosity::solve(in, matrix);

@@ -189,18 +189,19 @@ Solution solve(const Scene& scene, const matrix::Matrix& matrix) {
   return solution;
 }
 
-matrix::Options matrix_options(const Options& options) {
-  constexpr std::size_t kBudgetOfBalance = 2000;
+matrix::Options matrix_options(const Options& options, std::size_t patches) {
+  constexpr std::size_t kBudgetOfBalance = 40000, kLeastOfPatch = 16, kMostOfPatch = 2000;
+  const std::size_t of_patch = kBudgetOfBalance / std::max<std::size_t>(patches, 1);
   return {.factors = options.factors,
           .backs = true,
           .open = true,
-          .budget_beside = kBudgetOfBalance,
+          .budget_beside = std::clamp(of_patch, kLeastOfPatch, kMostOfPatch),
           .threads = options.threads};
 }
 
 Solution solve(const Scene& scene, const Options& options, const Hooks& hooks) {
   const std::vector<Selection> patches = patches_of(scene);
-  return solve(scene, matrix::compute(scene, patches, patches, matrix_options(options), hooks));
+  return solve(scene, matrix::compute(scene, patches, patches, matrix_options(options, patches.size()), hooks));
 }
 
 std::string_view claim_text(const Solution& solution, const Channel& channel) {

@@ -7,6 +7,7 @@
 #include "experiments/hemicube_resolution.h"
 #include "experiments/hemicube_scatter.h"
 #include "experiments/karkanis_times.h"
+#include "experiments/meshing.h"
 #include "experiments/nettle_rule.h"
 #include "experiments/small_emitters.h"
 #include "text/nearest_names.h"
@@ -26,7 +27,9 @@ constexpr Experiment kExperiments[] = {
     {"nettle-rule", "Nettle's rule: error against the patch's size over its distance", &nettle_rule},
     {"small-emitters", "Karkanis' conclusion: many small bright emitters, in radiosity", &small_emitters},
     {"closure", "a closed room: the form factors from a point to all patches sum to 1", &closure},
-    {"gradient", "finite differences of every method against exact derivatives, by step", &gradient_differences}};
+    {"gradient", "finite differences of every method against exact derivatives, by step", &gradient_differences},
+    {"meshing", "the Cornell box after all bounces: error against the size of cells, down to 1/8 of the box", &meshing},
+    {"meshing-fine", "the same down to 1/16: an hour or more", &fine_meshing, true}};
 
 }  // namespace
 

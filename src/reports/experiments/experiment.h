@@ -17,7 +17,7 @@
 namespace exactff::experiments {
 
 struct Effort {
-  bool abridged = false;  // a second each, for a first look; otherwise at most half a minute
+  bool abridged = false;  // some seconds each, for a first look; otherwise at most minutes
   int threads = 1;        // for values; times are always measured with one thread
 };
 
@@ -28,6 +28,7 @@ struct Experiment {
   std::string_view name;     // letters, digits and hyphens
   std::string_view summary;  // one line
   Result (*run)(const Effort&, const Hooks&) = nullptr;
+  bool by_name_only = false;  // "all" leaves it out: it takes long
 };
 
 // In the order of the report.

@@ -93,7 +93,9 @@ void Plan::add_experiments(const std::vector<std::string>& names) {
   };
   for (const std::string& name : names) {
     if (name == "all") {
-      std::ranges::for_each(experiment_names(), add);
+      for (const experiments::Experiment& one : experiments::all_experiments()) {
+        if (!one.by_name_only) add(std::string(one.name));
+      }
     } else {
       add(std::string(experiments::experiment_named(name).name));
     }

@@ -45,7 +45,8 @@ struct Plan {
   // Gives the scene a name that no other has.
   void add_scene(std::string scene_title, std::shared_ptr<const Scene> scene, study::Request request,
                  std::vector<Problem> warnings = {});
-  // "all" stands for every experiment. Drops repetitions. Throws InputError for an unknown name.
+  // "all" stands for every experiment but those that take long. Drops repetitions. Throws InputError for an unknown
+  // name.
   void add_experiments(const std::vector<std::string>& names);
 };
 

@@ -1,6 +1,8 @@
 #include "view_factors/cell_view.h"
 
 #include <algorithm>
+#include <span>
+#include <tuple>
 
 #include "kernel/poll.h"
 #include "view_factors/crossing_order.h"
@@ -20,10 +22,57 @@ const Edge& previous(const Ring& ring, std::size_t i) { return ring[(i + ring.si
 
 CellView::CellView(const Sight& sight, PairMemory& memory, std::size_t id) : sight_(sight), memory_(memory), id_(id) {
   for (const Occluder& occluder : sight.occluders) reversed_.push_back(reverse_of(occluder.ring));
+  find_same_edges();
   if (!sight.is_of_open()) return;
   for (PointId p = 0; p < sight.points.point_count(); ++p) {
     in_plane_.push_back(side_of(sight.receiver, sight.points[p]) == 0);
   }
+}
+
+void CellView::find_same_edges() {
+  struct Place {
+    LineId line;
+    PointId lower, upper;
+    std::uint32_t occluder, edge;
+    bool from_lower;
+  };
+  std::vector<Place> places;
+  for (std::uint32_t o = 0; o < sight_.occluders.size(); ++o) {
+    const Ring& ring = sight_.occluders[o].ring;
+    edges_.emplace_back(ring.size());
+    for (std::uint32_t i = 0; i < ring.size(); ++i) {
+      const auto [lower, upper] = std::minmax(ring[i].from, ring[i].to);
+      places.push_back({ring[i].line, lower, upper, o, i, ring[i].from == lower});
+    }
+  }
+  const auto ends_of = [](const Place& p) { return std::tuple(p.line, p.lower, p.upper); };
+  std::ranges::sort(places, {}, [&](const Place& p) { return std::tuple(ends_of(p), p.occluder, p.edge); });
+  for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
+    while (end < places.size() && ends_of(places[end]) == ends_of(places[begin])) {
+      same_edges_.push_back({places[end].occluder, places[end].from_lower});
+      ++end;
+    }
+    const EdgeRange range{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+    for (std::size_t i = begin; i < end; ++i) edges_[places[i].occluder][places[i].edge] = range;
+  }
+}
+
+void CellView::note_facing() {
+  facing_.assign(sight_.occluders.size(), 0);
+  for (const Candidate& candidate : *candidates_) facing_[candidate.occluder] = candidate.facing;
+}
+
+// True if a candidate lies on the other side of the edge: as seen from the cell, both run counter-clockwise round their
+// occluders, in opposite directions. `edge`: by its place in the ring.
+bool CellView::is_between_occluders(std::uint32_t owner, std::size_t edge) const {
+  const EdgeRange range = edges_[owner][edge];
+  if (range.end - range.begin == 1) return false;
+  const auto same = std::span(same_edges_).subspan(range.begin, range.end - range.begin);
+  const auto own = std::ranges::find(same, owner, &SameEdge::occluder);
+  return std::ranges::any_of(same, [&](const SameEdge& other) {
+    const int facing = facing_[other.occluder];
+    return facing != 0 && (facing == facing_[owner]) == (other.from_lower != own->from_lower);
+  });
 }
 
 void CellView::start() {
@@ -398,18 +447,28 @@ bool CellView::emit_uncovered(const Edge& edge, int sign) {
 // False if it stopped early, with a cut.
 bool CellView::look_at_edges() {
   const std::uint64_t before = work_;
-  const auto look_at_ring = [&](const Ring& ring, std::size_t owner) {
-    for (const Edge& edge : ring) {
+  const auto look_at_ring = [&](const Ring& ring, const auto& is_left_out, std::size_t owner) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      if (is_left_out(i)) continue;
       if (work_ - before > kManySigns) {
         if (best_cut_ != nullptr) return false;
         kernel::poll();
       }
-      look_at_edge(edge, owner);
+      look_at_edge(ring[i], owner);
     }
     return true;
   };
-  if (!look_at_ring(sight_.source, kSource)) return false;
-  return std::ranges::all_of(*candidates_, [&](const Candidate& c) { return look_at_ring(ring_of(c), c.occluder); });
+  if (!look_at_ring(
+          sight_.source, [](std::size_t) { return false; }, kSource))
+    return false;
+  note_facing();
+  return std::ranges::all_of(*candidates_, [&](const Candidate& c) {
+    const Ring& ring = ring_of(c);
+    const auto is_inner = [&](std::size_t i) {
+      return is_between_occluders(c.occluder, c.facing > 0 ? i : ring.size() - 1 - i);
+    };
+    return look_at_ring(ring, is_inner, c.occluder);
+  });
 }
 
 std::size_t CellView::count_events(const Cell& cell, const Candidates& candidates) {

@@ -25,6 +25,9 @@
 // has an edge in the receiver's plane. If these parts follow one another once around, no horizon bounds the region, and
 // they are left out.
 //
+// Meshes. Two occluders that meet in an edge, and that show the cell fronts, or backs, of one surface, lie on opposite
+// sides of it. So it bounds nothing, and needs no further look: of a finely cut wall, silhouettes are left.
+//
 // Arcs. An edge is seen under less than 180 degrees, and all lies in the closed half-space in front of the receiver.
 // Edges in the receiver's plane are all seen along the horizon, where two edges may face each other from opposite
 // sides. So an arc (a, b) is intersected with an arc (p, q) of the same great circle by asking which ends lie in the
@@ -119,6 +122,15 @@ class CellView {
   };
   enum class Along { kNo, kSameSide, kOppositeSide };
 
+  // All edges of occluders with the same ends, as ranges of same_edges_. They are written in either direction.
+  struct SameEdge {
+    std::uint32_t occluder;
+    bool from_lower;  // from the point of the lower number
+  };
+  struct EdgeRange {
+    std::uint32_t begin, end;
+  };
+
   // An edge's line and a point, whose plane cuts the cell.
   struct Doubt {
     LineId line;
@@ -138,6 +150,9 @@ class CellView {
   Covered between(const Edge& edge, const Edge& in, const Edge& out);
   const Ring& ring_of(const Candidate& candidate) const;
   void look_at_edge(const Edge& edge, std::size_t owner);
+  void find_same_edges();
+  void note_facing();
+  [[nodiscard]] bool is_between_occluders(std::uint32_t owner, std::size_t edge) const;
   [[nodiscard]] bool look_at_edges();
   bool covers(Along along, std::size_t owner, std::size_t other) const;
   int order(const Edge& edge, const End& p, const End& q);
@@ -160,6 +175,9 @@ class CellView {
   std::size_t top_ = 0;         // depth of the first cells that are looked at
   std::vector<Ring> reversed_;  // of every occluder
   std::vector<bool> in_plane_;  // of the receiver, by point; only if there is no source
+  std::vector<SameEdge> same_edges_;
+  std::vector<std::vector<EdgeRange>> edges_;  // of every occluder, in the order of its ring
+  std::vector<std::int8_t> facing_;            // of every occluder; 0: it is no candidate
 
   const Cell* cell_ = nullptr;
   const Candidates* candidates_ = nullptr;

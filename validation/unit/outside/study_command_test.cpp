@@ -358,6 +358,25 @@ TEST_F(StudyCommand, OfNothingButLeftOutScenesIsRefused) {
   EXPECT_TRUE(said("every scene of the study is left out")) << error_;
 }
 
+TEST_F(StudyCommand, ExperimentsNeedNoScene) {
+  const auto compare = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all{"compare", "-o", out_};
+    all.insert(all.end(), more.begin(), more.end());
+    const RunningProgram program{EXACTFF_PROGRAM, all, directory_.path() / "stderr",
+                                 [] { ::setenv("PATH", "/nonexistent", 1); }};
+    const int code = program.wait();
+    error_ = program.error();
+    return code;
+  };
+  EXPECT_EQ(compare({}), 2);
+  EXPECT_TRUE(said("SCENE is required")) << error_;
+  EXPECT_EQ(compare({"--experiment", "closure", "--on", "floor"}), 2);
+  EXPECT_TRUE(said("without a scene: --on floor")) << error_;
+  EXPECT_EQ(compare({"--experiment", "closure", "--abridged"}), 0) << error_;
+  EXPECT_TRUE(fs::exists(out_ / "closure.csv"));
+  EXPECT_NE(text_of(out_ / "report.html").find("exactff compare --experiment closure"), std::string::npos);
+}
+
 TEST_F(StudyCommand, RunsAnExperimentOnceHoweverOftenItIsNamed) {
   put("experiment closure closure\n");
   EXPECT_EQ(run(out_, {"--abridged", "--experiment", "closure"}), 0) << error_;

@@ -7,12 +7,14 @@
 #include <string>
 
 #include "exactff/models.h"
+#include "exactff/scene_files.h"
 #include "experiments/closure.h"
 #include "experiments/experiment.h"
 #include "experiments/gradient_differences.h"
 #include "experiments/hemicube_resolution.h"
 #include "experiments/hemicube_scatter.h"
 #include "experiments/karkanis_times.h"
+#include "experiments/meshing.h"
 #include "experiments/nettle_rule.h"
 #include "experiments/small_emitters.h"
 #include "page/plot_script.h"
@@ -25,7 +27,7 @@ const Hooks kNoHooks;
 // --- what they share -----------------------------------------------------------------------------------
 
 TEST(Experiments, AreFoundByNameAndNearlyByAnother) {
-  ASSERT_EQ(all_experiments().size(), 7U);
+  ASSERT_EQ(all_experiments().size(), 9U);
   for (const Experiment& e : all_experiments()) EXPECT_EQ(&experiment_named(e.name), &e);
   try {
     (void)experiment_named("nettle");
@@ -51,6 +53,24 @@ TEST(Experiments, TellWhereABrokenLineReachesAValue) {
   EXPECT_FALSE(reaches(line, 1000.0));
   EXPECT_FALSE(reaches(line, 0.1));
 }
+
+// A floor and a wall that meet, and a lamp above the floor.
+MeshingScene corner() {
+  SceneBuilder builder;
+  const MaterialId grey = builder.add_material({.name = "grey", .reflectance = {0.75, 0.5, 0.25}});
+  const MaterialId lamp = builder.add_material({.name = "lamp", .reflectance = {}, .radiosity = {4.0, 4.0, 4.0}});
+  const auto add = [&](const char* name, MaterialId material, const std::vector<Vec3>& ring) {
+    std::vector<std::uint32_t> corners;
+    for (const Vec3& corner : ring) corners.push_back(builder.add_vertex(corner));
+    builder.add_face(builder.patch(name), material, {corners});
+  };
+  add("floor", grey, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  add("wall", grey, {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}});
+  add("lamp", lamp, {{0.375, 0.375, 1}, {0.375, 0.625, 1}, {0.625, 0.625, 1}, {0.625, 0.375, 1}});
+  return {builder.build(), {.eye = {4, 1.5, 3}, .look = {0.25, 0.5, 0.25}, .up = {0, 0, 1}, .fov = 22.0}};
+}
+
+MeshingSize small_meshing() { return {.parts = {1, 2, 4, 8}, .pixels = 16}; }
 
 // The values of a run, joined.
 std::string values_of(const Result& result) {
@@ -92,8 +112,16 @@ std::vector<SmallRun> small_runs() {
     return gradient_differences(
         DifferencesSize{.receivers = 3, .steps = {0.01, 1e-4}, .choices = {"exact"}, .timed = 1}, threads, hooks);
   };
-  return {{"differences", differences}, {"scatter", scatter},   {"resolution", resolution},
-          {"nettle", nettle},           {"emitters", emitters}, {"room", room}};
+  const auto cells = [](int threads, const Hooks& hooks) {
+    return meshing(corner(), MeshingSize{.parts = {1, 2}, .pixels = 6}, threads, hooks);
+  };
+  return {{"differences", differences},
+          {"scatter", scatter},
+          {"resolution", resolution},
+          {"nettle", nettle},
+          {"emitters", emitters},
+          {"room", room},
+          {"cells", cells}};
 }
 
 TEST(Experiments, GiveTheSameBytesOfValuesForAnyNumberOfThreads) {
@@ -275,6 +303,68 @@ TEST(GradientDifferences, OfExactValuesComeNearAndThoseOfSamplesDoNot) {
       EXPECT_GT(errors.rms[2], 10.0 * errors.rms[1]) << errors.scene;
     }
   }
+}
+
+// --- cells of one radiosity ---
+
+TEST(Meshing, SeesTheCornellBoxOfTheFile) {
+  const Scene ours = cornell_box().scene, theirs = read_obj(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
+  EXPECT_TRUE(std::ranges::equal(ours.vertices(), theirs.vertices()));
+  ASSERT_EQ(ours.faces().size(), theirs.faces().size());
+  for (std::size_t f = 0; f < ours.faces().size(); ++f) {
+    const Face &one = ours.faces()[f], &other = theirs.faces()[f];
+    EXPECT_EQ(one.rings, other.rings);
+    EXPECT_EQ(ours.patch(one.patch).name, theirs.patch(other.patch).name);
+    EXPECT_EQ(ours.material(one.material).name, theirs.material(other.material).name);
+    EXPECT_EQ(ours.material(one.material).reflectance, theirs.material(other.material).reflectance);
+    EXPECT_EQ(ours.material(one.material).radiosity, theirs.material(other.material).radiosity);
+  }
+}
+
+TEST(Meshing, SmallerCellsErrLess) {
+  const MeshingStudy study = meshing_study(corner(), small_meshing(), 1, kNoHooks);
+  ASSERT_EQ(study.levels.size(), 3U);
+  EXPECT_EQ(study.reference.parts, 8);
+  EXPECT_EQ(study.levels[1].cells, 9U);
+  EXPECT_GT(study.levels[0].all.pixels, 100U);
+  EXPECT_GT(study.levels[0].all.rms, 0.001);
+  for (std::size_t l = 0; l < 3; ++l) {
+    const MeshingLevel& level = study.levels[l];
+    EXPECT_GE(level.all.worst, level.all.p99);
+    EXPECT_GT(level.all.p99, level.all.rms);
+    EXPECT_GT(level.share_of_worst_tenth, 0.15);
+    EXPECT_EQ(level.patches[2].pixels, 0U) << "the lamp does not count";
+    EXPECT_EQ(level.patches[0].pixels + level.patches[1].pixels, level.all.pixels);
+    if (l == 0) continue;
+    EXPECT_LT(level.all.rms, 0.9 * study.levels[l - 1].all.rms);
+  }
+  ASSERT_TRUE(study.slope);
+  EXPECT_GT(*study.slope, 0.5);
+  EXPECT_LT(*study.slope, 2.0);
+}
+
+// Light that is the same everywhere does not depend on cells: B is 2 in all of this room, whose walls emit 1 and
+// reflect a half, but for one that reflects all.
+TEST(Meshing, InAFurnaceCellsDoNotMatter) {
+  SceneBuilder builder;
+  const MaterialId glow =
+      builder.add_material({.name = "glow", .reflectance = {0.5, 0.5, 0.5}, .radiosity = {1, 1, 1}});
+  const MaterialId white = builder.add_material({.name = "white", .reflectance = {1, 1, 1}});
+  const auto corner_at = [&](int i) {
+    return Vec3{static_cast<double>(i & 1), static_cast<double>(i >> 1 & 1), static_cast<double>(i >> 2 & 1)};
+  };
+  for (int i = 0; i < 8; ++i) builder.add_vertex(corner_at(i));
+  const std::vector<std::vector<std::uint32_t>> sides = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
+                                                         {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    builder.add_face(builder.patch("side " + std::to_string(i)), i == 0 ? white : glow, {sides[i]});
+  }
+  const MeshingScene room{builder.build(), {.eye = {0.5, 0.5, 0.875}, .look = {0.5, 0.5, 0}, .up = {0, 1, 0}}};
+  const MeshingStudy study = meshing_study(room, {.parts = {1, 2}, .pixels = 8}, 1, kNoHooks);
+  EXPECT_EQ(study.levels.front().all.pixels, 64U);
+  EXPECT_LT(study.levels.front().all.worst, 1e-3);
+  EXPECT_NEAR(study.levels.front().all.mean_ratio, 1.0, 1e-3);
+  EXPECT_LT(study.reference.half_width, 0.05);
 }
 
 // --- emitters, closure ---------------------------------------------------------------------------------
