@@ -155,10 +155,12 @@ void print_vertices(const Scene& scene, const Gradient& gradient) {
     for (const Derivative& d : vertex.position) std::cout << "  " << plain_derivative(d);
     std::cout << '\n';
   }
-  if (gradient.frames.size() != 1) return;
-  std::cout << "  the source's plane follows";
-  for (const std::uint32_t corner : gradient.frames.front()) std::cout << ' ' << vec_text(scene.vertices()[corner]);
-  std::cout << '\n';
+  const char* const whose = gradient.frames.size() == 1 ? "the source's plane" : "the plane of a face of the source";
+  for (const auto& frame : gradient.frames) {
+    std::cout << "  " << whose << " follows";
+    for (const std::uint32_t corner : frame) std::cout << ' ' << vec_text(scene.vertices()[corner]);
+    std::cout << '\n';
+  }
 }
 
 void print_adaptive(const PointTerm& one) {

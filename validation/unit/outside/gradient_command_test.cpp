@@ -122,6 +122,18 @@ TEST_F(GradientCommand, VerticesAddUpToTheGradient) {
       << text.output;
 }
 
+TEST_F(GradientCommand, VerticesNameWhatEachFaceOfALightFollows) {
+  std::string in_two = kGradientScene;
+  in_two.replace(in_two.find("f 1 2 3 4"), 9, "f 1 2 3\nf 1 3 4");
+  scene = directory.write("in_two.obj", in_two).string();
+  const ProgramRun text = point("0.375", "0.25", {"--gradient", "--vertices"});
+  for (const char* frame : {"(-1, 1, 1) (1, 1, 1) (1, -1, 1)", "(-1, 1, 1) (1, -1, 1) (-1, -1, 1)"}) {
+    EXPECT_NE(text.output.find(std::string("  the plane of a face of the source follows ") + frame + '\n'),
+              std::string::npos)
+        << text.output;
+  }
+}
+
 TEST_F(GradientCommand, TruthHasColumnsThatAreEmptyAtKinks) {
   const auto receivers =
       directory.write("r.csv", "id,x,y,z,nx,ny,nz,on\na,0.375,0.25,0,0,0,1,floor\nb,-3,0.5,0,0,0,1,floor\n");
