@@ -100,6 +100,11 @@ std::string axis_commands(const Axes& axes, const Key& key) {
                      std::to_string(key.columns) + "\nset border 3 lw 0.8\nset tics nomirror\n";
   if (axes.log_x) text += "set logscale x\nset format x '10^{%T}'\n";
   if (axes.log_y) text += "set logscale y\nset format y '10^{%T}'\n";
+  return text;
+}
+
+std::string extra_commands(const Axes& axes) {
+  std::string text;
   for (const std::string& command : axes.extra) text += command + '\n';
   return text;
 }
@@ -114,6 +119,7 @@ std::vector<double> drawn_marks(const Axes& axes) {
 }
 
 // Otherwise a logarithmic axis would extend to the next power of ten.
+constexpr double kXMargin = 1.5;
 std::string x_range(const Axes& axes, const std::vector<Points>& drawn) {
   if (!axes.log_x) return {};
   std::vector<double> all = drawn_marks(axes);
@@ -121,11 +127,42 @@ std::string x_range(const Axes& axes, const std::vector<Points>& drawn) {
     for (const auto& point : points) all.push_back(point.first);
   }
   const auto [low, high] = std::minmax_element(all.begin(), all.end());
-  return "set xrange [" + text::shortest(*low / 1.5) + ':' + text::shortest(*high * 1.5) + "]\n";
+  return "set xrange [" + text::shortest(*low / kXMargin) + ':' + text::shortest(*high * kXMargin) + "]\n";
 }
 
-// A logarithmic axis of a single value, or one without a power of ten on it, would have no number beside it. And
-// gnuplot 6 writes a number at minor tics, too, of an axis of less than two decades: no longer all powers of ten.
+// gnuplot 6 also writes a number, 10^1 or 10^2, at minor tics of a logarithmic axis of less than two decades. There the
+// tics are listed, in the way in which gnuplot 5 draws them.
+std::string decimal_tics(const char* axis, double low, double high) {
+  if (std::log10(high) - std::log10(low) >= 2.0) return {};
+  std::string tics;
+  const int last = static_cast<int>(std::ceil(std::log10(high)));
+  for (int power = static_cast<int>(std::floor(std::log10(low))); power <= last; ++power) {
+    const std::string exponent = 'e' + std::to_string(power);
+    tics += (tics.empty() ? "" : ", ") + std::string("'10^{") + (power < 0 ? "−" : "") +
+            std::to_string(std::abs(power)) + "}' 1" + exponent;
+    for (int digit = 2; digit < 10 && power < last; ++digit) tics += ", '' " + std::to_string(digit) + exponent + " 1";
+  }
+  return std::string("if (GPVAL_VERSION >= 6.0) set ") + axis + "tics (" + tics + ")\n";
+}
+
+// A logarithmic axis of a single value, or one without a power of ten on it, would have no number beside it: it is
+// widened to powers of ten. `margin`: by what factor the axis is longer than the values at each end, unless gnuplot
+// lets it end at powers of ten (0).
+std::string readable_range(const char* axis, const std::vector<double>& values, double margin) {
+  const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
+  const double low = *smallest / std::max(margin, 1.0), high = *largest * std::max(margin, 1.0);
+  const double below = std::floor(std::log10(low)), above = std::ceil(std::log10(high));
+  std::string text;
+  const bool widens = std::ceil(std::log10(low)) > std::floor(std::log10(high));
+  if (widens) {
+    text = std::string("set ") + axis + "range [1e" + std::to_string(static_cast<int>(below)) + ":1e" +
+           std::to_string(static_cast<int>(above)) + "]\n";
+  }
+  const bool ends_at_powers = widens || margin == 0.0;
+  return text + (ends_at_powers ? decimal_tics(axis, std::pow(10.0, below), std::pow(10.0, above))
+                                : decimal_tics(axis, low, high));
+}
+
 std::string readable_ranges(const Axes& axes, const std::vector<Points>& drawn) {
   std::vector<double> xs = drawn_marks(axes), ys;
   for (const Points& points : drawn) {
@@ -134,22 +171,7 @@ std::string readable_ranges(const Axes& axes, const std::vector<Points>& drawn) 
       ys.push_back(y);
     }
   }
-  std::string text;
-  const auto widen = [&](const char* axis, const std::vector<double>& values, double margin) {
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    const double below = std::floor(std::log10(*low / margin)), above = std::ceil(std::log10(*high * margin));
-    const bool widens = std::ceil(std::log10(*low / margin)) > std::floor(std::log10(*high * margin));
-    if (widens) {
-      text += std::string("set ") + axis + "range [1e" + std::to_string(static_cast<int>(below)) + ":1e" +
-              std::to_string(static_cast<int>(above)) + "]\n";
-    }
-    const bool ends_at_powers = widens || margin == 1.0;
-    const double decades = ends_at_powers ? above - below : std::log10(*high / *low * margin * margin);
-    if (decades < 2.0) text += std::string("if (GPVAL_VERSION >= 6.0) set format ") + axis + " '%g'\n";
-  };
-  if (axes.log_x) widen("x", xs, 1.5);
-  if (axes.log_y) widen("y", ys, 1.0);
-  return text;
+  return (axes.log_x ? readable_range("x", xs, kXMargin) : "") + (axes.log_y ? readable_range("y", ys, 0.0) : "");
 }
 
 std::string style_of(const Series& series) {
@@ -198,8 +220,8 @@ std::string plot(const Axes& axes, const std::vector<Series>& series, const Bloc
     titles.push_back(mark.title);
   }
   const Key key = key_of(titles);
-  return plot_head(key) + axis_commands(axes, key) + x_range(axes, drawn) + readable_ranges(axes, drawn) + arrows +
-         data + plots + '\n';
+  return plot_head(key) + axis_commands(axes, key) + x_range(axes, drawn) + readable_ranges(axes, drawn) +
+         extra_commands(axes) + arrows + data + plots + '\n';
 }
 
 // The style of a mark over bars. Bars use the first colour.
@@ -337,10 +359,10 @@ std::string bar_plot(const Axes& axes, const std::vector<Bar>& bars, const std::
     keys += ", \\\n     keyentry with lines " + style + " title " + text::gnuplot_string(marks[i].title);
   }
   const Key key = key_of(titles);
-  return plot_head(key, Background::kWhite) + axis_commands(axes, key) + x_range(axes, {ends}) + "set yrange [0:*]\n" +
-         arrows + "$bars << END\n" + data +
-         "END\nplot $bars using 1:3:1:2:(0):3 with boxxyerror lc rgb '#0072B2' fs solid 0.6 noborder notitle" + keys +
-         '\n';
+  return plot_head(key, Background::kWhite) + axis_commands(axes, key) + x_range(axes, {ends}) +
+         readable_ranges(axes, {ends}) + "set yrange [0:*]\n" + extra_commands(axes) + arrows + "$bars << END\n" +
+         data + "END\nplot $bars using 1:3:1:2:(0):3 with boxxyerror lc rgb '#0072B2' fs solid 0.6 noborder notitle" +
+         keys + '\n';
 }
 
 namespace {

@@ -179,10 +179,13 @@ TEST_F(NamedMethods, OneSettingIsComparedWithTheExactValues) {
 TEST(LinePlot, OfOnePointHasReadableAxesAndTheMark) {
   const page::Axes axes{"time", "error", true, true, {}, {{"exact", 40.0}}};
   const std::string script = page::line_plot(axes, {{"X", {{60.0, 0.02}}, 1}});
-  EXPECT_NE(script.find("set xrange [1e1:1e2]\nif (GPVAL_VERSION >= 6.0) set format x '%g'\n"
-                        "set yrange [1e-2:1e-1]\nif (GPVAL_VERSION >= 6.0) set format y '%g'\n"),
+  EXPECT_NE(script.find("set xrange [1e1:1e2]\nif (GPVAL_VERSION >= 6.0) set xtics ('10^{1}' 1e1, '' 2e1 1, "),
             std::string::npos)
       << script;
+  EXPECT_NE(script.find(" '10^{2}' 1e2)\nset yrange [1e-2:1e-1]\n"), std::string::npos) << script;
+  EXPECT_NE(script.find(" set ytics ('10^{−2}' 1e-2, '' 2e-2 1, "), std::string::npos) << script;
+  const std::string two_decades = page::line_plot(axes, {{"X", {{60.0, 0.02}, {70.0, 0.2}}, 1}});
+  EXPECT_EQ(two_decades.find("set ytics"), std::string::npos) << two_decades;
   const std::string wide = page::line_plot(axes, {{"X", {{6.0, 0.02}, {600.0, 0.2}}, 1}});
   EXPECT_EQ(wide.find("set xrange [1e"), std::string::npos) << wide;
   EXPECT_EQ(wide.find("set yrange"), std::string::npos) << wide;
