@@ -115,7 +115,7 @@ class DraftOf : public testing::TestWithParam<RandomFamily> {};
 
 // By cells, as far as they go; both intervals hold the factor, so they meet.
 TEST_P(DraftOf, RandomScenesMeetsTheFactorsByCells) {
-  for_each_scene_of(GetParam(), 60, [](const PlainScene&, const Scene& scene, const Receiver&) {
+  for_each_scene_of(GetParam(), 120, [](const PlainScene&, const Scene& scene, const Receiver&) {
     const std::vector<Selection> all = patches_with_area(scene);
     Matrix m;
     try {
