@@ -191,11 +191,11 @@ std::vector<Problem> warnings_of_dark_sources(const Scene& scene, std::span<cons
     if (counts) warnings.push_back(wording.problem(source, *counts));
   }
   FlipTrials trials(scene);
-  if (const auto inward = inward_surfaces(scene, trials)) {
-    const auto has_receivers = [&](const Selection& object) {
-      return std::ranges::any_of(own, [&](const Selection& one) { return one.patch == object.patch; });
-    };
-    if (std::ranges::any_of(inward->objects, has_receivers)) warnings.push_back(inward->words);
+  const auto has_receivers = [&](const Selection& object) {
+    return std::ranges::any_of(own, [&](const Selection& one) { return one.patch == object.patch; });
+  };
+  for (const auto& finding : {inward_surfaces(scene, trials), outward_rooms(scene, trials)}) {
+    if (finding && std::ranges::any_of(finding->objects, has_receivers)) warnings.push_back(finding->words);
   }
   return warnings;
 }

@@ -12,9 +12,9 @@
 namespace exactff::slips {
 
 std::string_view to_string(Kind kind) {
-  constexpr std::array<std::string_view, 9> kNames = {"contradicting-normals", "inward-surface",  "unseen-front",
-                                                      "emitter-looks-away",    "doubled-faces",   "opposite-faces",
-                                                      "overlapping-fronts",    "nearly-coplanar", "scale"};
+  constexpr std::array<std::string_view, 10> kNames = {
+      "contradicting-normals", "inward-surface", "outward-room",       "unseen-front",    "emitter-looks-away",
+      "doubled-faces",         "opposite-faces", "overlapping-fronts", "nearly-coplanar", "scale"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -151,12 +151,14 @@ std::vector<Finding> diagnose(const Scene& scene) {
   };
   FlipTrials trials(scene);
   add(contradicting_normals(scene, trials));
-  const std::optional<Finding> inward = inward_surfaces(scene, trials);
-  add(inward);
-  const std::vector<Selection> surfaces = inward ? inward->objects : std::vector<Selection>();
-  std::ranges::move(unseen_fronts(scene, surfaces, trials), std::back_inserter(findings));
+  std::vector<Selection> turned;
+  for (const auto& finding : {inward_surfaces(scene, trials), outward_rooms(scene, trials)}) {
+    if (finding) turned.insert(turned.end(), finding->objects.begin(), finding->objects.end());
+    add(finding);
+  }
+  std::ranges::move(unseen_fronts(scene, turned, trials), std::back_inserter(findings));
   std::ranges::move(twin_faces(scene), std::back_inserter(findings));
-  std::ranges::move(overlap_findings(scene), std::back_inserter(findings));
+  std::ranges::move(overlap_findings(scene, turned), std::back_inserter(findings));
   add(odd_scale(scene));
   return findings;
 }

@@ -16,11 +16,13 @@ namespace exactff::slips {
 
 [[nodiscard]] std::optional<Finding> contradicting_normals(const Scene& scene, FlipTrials& trials);
 [[nodiscard]] std::optional<Finding> inward_surfaces(const Scene& scene, FlipTrials& trials);
-// kUnseenFront, kEmitterLooksAway. `inward`: the surfaces that inward_surfaces() has found.
-[[nodiscard]] std::vector<Finding> unseen_fronts(const Scene& scene, std::span<const Selection> inward,
+[[nodiscard]] std::optional<Finding> outward_rooms(const Scene& scene, FlipTrials& trials);
+// kUnseenFront, kEmitterLooksAway. `turned`: the surfaces that the two above have found.
+[[nodiscard]] std::vector<Finding> unseen_fronts(const Scene& scene, std::span<const Selection> turned,
                                                  FlipTrials& trials);
-[[nodiscard]] std::vector<Finding> twin_faces(const Scene& scene);        // kDoubledFaces, kOppositeFaces
-[[nodiscard]] std::vector<Finding> overlap_findings(const Scene& scene);  // kOverlappingFronts, kNearlyCoplanar
+[[nodiscard]] std::vector<Finding> twin_faces(const Scene& scene);  // kDoubledFaces, kOppositeFaces
+// kOverlappingFronts, kNearlyCoplanar, except of `turned`: what lies on the back of a table does not overlap it.
+[[nodiscard]] std::vector<Finding> overlap_findings(const Scene& scene, std::span<const Selection> turned);
 [[nodiscard]] std::optional<Finding> odd_scale(const Scene& scene);
 
 }  // namespace exactff::slips

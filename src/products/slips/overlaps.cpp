@@ -264,12 +264,16 @@ Problem warning_of_overlaps(const Scene& scene, std::span<const Overlap> overlap
   return words_of(scene, overlaps, "there both count in full, and rows of a matrix exceed 1");
 }
 
-std::vector<Finding> overlap_findings(const Scene& scene) {
+std::vector<Finding> overlap_findings(const Scene& scene, std::span<const Selection> turned) {
+  const auto is_turned = [&](const Selection& patch) {
+    return std::ranges::any_of(turned, [&](const Selection& one) { return one.patch == patch.patch; });
+  };
   std::vector<Selection> patches;
   for (std::size_t p = 0; p < scene.patches().size(); ++p) patches.push_back({static_cast<PatchId>(p), {}, scene.id()});
   std::vector<Overlap> in_one_plane, apart;
   for (const Overlap& one : overlapping_fronts(scene, patches)) {
-    if (!one.doubled) (one.apart == 0.0 ? in_one_plane : apart).push_back(one);
+    if (one.doubled || is_turned(one.smaller) || is_turned(one.larger)) continue;
+    (one.apart == 0.0 ? in_one_plane : apart).push_back(one);
   }
   std::vector<Finding> findings;
   const auto add = [&](Kind kind, const std::vector<Overlap>& overlaps, Problem words) {

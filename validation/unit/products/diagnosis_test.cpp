@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <sstream>
 #include <string>
 
@@ -124,6 +125,57 @@ TEST(Diagnosis, LetsRoomsAndHollowsLookInward) {
   const std::string beside = "v 11 1 1\nv 12 1 1\nv 11 2 1\nv 11 1 2\n";
   const Scene two = read(large + beside + tetrahedron("a", 1, true) + tetrahedron("b", 5, false));
   EXPECT_EQ(flag(two, Kind::kInwardSurface), "--flip b");
+}
+
+// A box as a patch of its own.
+void add_box(generate::PlainScene& plain, const std::string& name, const Vec3& low, const Vec3& high, bool outward) {
+  const auto at = [&](int i) {
+    return Vec3{(i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y, (i & 4) != 0 ? high.z : low.z};
+  };
+  for (const std::array<int, 4>& ring :
+       {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
+    std::vector<Vec3> corners;
+    for (const int i : ring) corners.push_back(at(i));
+    if (!outward) std::ranges::reverse(corners);
+    plain.add_ring(plain.patch(name), corners);
+  }
+}
+
+// Turned alone, the front of the table's bottom would lie on that of the leg's top. The leg's bottom, which looks up,
+// lies on the front of the floor, and must not be cut out of it.
+TEST(Diagnosis, FindsSolidsThatTouchAndLookInward) {
+  const auto kinds_with = [](bool outward, Vec3 leg) {
+    generate::PlainScene plain;
+    plain.add_ring(plain.patch("floor"), {{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0}});
+    add_box(plain, "table", {1, 1, 1}, {3, 3, 1.25}, outward);
+    add_box(plain, "leg", leg, {2, 2, 1}, outward);
+    const Scene scene = generate::build(plain);
+    return kinds_of(scene).empty() ? Names{} : Names{kinds_of(scene).front(), flag(scene, Kind::kInwardSurface)};
+  };
+  for (const double foot : {0.0, 0.25}) {
+    EXPECT_EQ(kinds_with(true, {1.5, 1.5, foot}), Names{});
+    EXPECT_EQ(kinds_with(false, {1.5, 1.5, foot}), (Names{"inward-surface", "--flip table,leg"})) << foot;
+  }
+}
+
+TEST(Diagnosis, FindsRoomsThatLookOutward) {
+  const auto room = [](bool outward, bool ground) {
+    generate::PlainScene plain;
+    plain.materials.push_back({.name = "bright", .radiosity = {5, 5, 5}});
+    add_box(plain, "room", {0, 0, 0}, {4, 4, 3}, outward);
+    plain.add_ring(plain.patch("lamp"), {{1, 1, 2}, {1, 2, 2}, {2, 2, 2}, {2, 1, 2}});
+    plain.patch("lamp").material = "bright";
+    if (ground) plain.add_ring(plain.patch("ground"), {{-9, -9, -1}, {9, -9, -1}, {9, 9, -1}, {-9, 9, -1}});
+    return generate::build(plain);
+  };
+  EXPECT_EQ(kinds_of(room(false, false)), Names{});
+  const Scene wrong = room(true, false);
+  EXPECT_EQ(kinds_of(wrong), Names{"outward-room"});
+  EXPECT_EQ(sentence(wrong, Kind::kOutwardRoom),
+            "1 closed surface looks outward, and all that sees it stands in it: 'room' (its inner side is its back, "
+            "which emits nothing and receives nothing); turn it round with --flip room");
+  EXPECT_EQ(kinds_of(wrong.with_flipped(wrong.select("room"))), Names{});
+  EXPECT_EQ(sentence(room(true, true), Kind::kOutwardRoom), "nothing") << "the ground sees it";
 }
 
 TEST(Diagnosis, FindsFrontsThatNobodySees) {

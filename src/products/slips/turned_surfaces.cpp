@@ -1,9 +1,10 @@
-// Closed surfaces whose fronts look inward. A room does so rightly, and so does the wall of a hollow in a solid; a box
-// that stands among other things does not. A room that stands beside a few other faces is told from a box by what a
-// flip would change.
+// Closed surfaces that are turned the wrong way. One whose fronts look inward may be a room or the wall of a hollow in
+// a solid; a box that stands among other things is neither. A room that stands beside a few other faces is told from a
+// box by what a flip would change. And a room whose fronts look outward shows only backs to what stands in it.
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "kernel/vec.h"
@@ -41,9 +42,9 @@ bool contains(const Box& outer, const Box& inner) {
          within(outer.low.z, outer.high.z, inner.low.z, inner.high.z);
 }
 
-class InwardSurfaces {
+class TurnedSurfaces {
  public:
-  explicit InwardSurfaces(const Scene& scene)
+  explicit TurnedSurfaces(const Scene& scene)
       : scene_(scene), found_(closed_surfaces(scene)), pieces_(found_.surfaces().size()) {
     if (found_.empty()) return;
     for (std::uint32_t piece = 0; piece < scene.pieces().size(); ++piece) {
@@ -52,17 +53,27 @@ class InwardSurfaces {
     }
   }
 
-  std::vector<std::uint32_t> find() {
-    std::vector<std::uint32_t> wrong;
+  // That look inward and are no room, as far as can be told without trying.
+  std::vector<std::uint32_t> boxes() {
+    std::vector<std::uint32_t> found;
     for (std::uint32_t s = 0; s < pieces_.size(); ++s) {
       if (!found_.surfaces()[s].turned_inside_out) continue;
       const bool alone = pieces_[s].size() == scene_.pieces().size();
-      if (!alone && !encloses_anything(s) && !is_hollow(s) && triangles_ < kMostTriangles) wrong.push_back(s);
+      if (!alone && !encloses_anything(s) && !is_hollow(s) && triangles_ < kMostTriangles) found.push_back(s);
     }
-    return wrong;
+    return found;
   }
 
-  [[nodiscard]] std::vector<Selection> selections(const std::vector<std::uint32_t>& surfaces) const {
+  // That look outward and enclose something.
+  std::vector<std::uint32_t> rooms() {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t s = 0; s < pieces_.size(); ++s) {
+      if (!found_.surfaces()[s].turned_inside_out && encloses_anything(s)) found.push_back(s);
+    }
+    return found;
+  }
+
+  [[nodiscard]] std::vector<Selection> selections(std::span<const std::uint32_t> surfaces) const {
     std::vector<FaceId> faces;
     for (const std::uint32_t s : surfaces) {
       for (const std::uint32_t piece : pieces_[s]) faces.push_back(scene_.pieces()[piece].face);
@@ -72,16 +83,28 @@ class InwardSurfaces {
 
   // A flip brings patches into sight of each other, and is no mistake about a room beside a stray face: an emitter, or
   // more area than its own, comes into its sight.
-  [[nodiscard]] bool is_better_turned(std::uint32_t surface, FlipTrials& trials) const {
-    const FlipEffect effect = trials.try_flip(selections({surface}));
-    return effect.helps() && (effect.lit_after > effect.lit_before || gains_area(surface, effect));
+  [[nodiscard]] bool are_better_turned(std::span<const std::uint32_t> boxes, const FlipEffect& effect) const {
+    return effect.helps() && (effect.lit_after > effect.lit_before || gains_area(boxes, effect));
+  }
+
+  // Nothing else sees its fronts now, and something does once it is turned.
+  [[nodiscard]] bool is_better_turned(std::uint32_t room, const FlipEffect& effect) const {
+    std::set<std::size_t> own;
+    for (const std::uint32_t piece : pieces_[room]) {
+      own.insert(index_of(scene_.face(scene_.pieces()[piece].face).patch));
+    }
+    const auto is_of_others = [&](const auto& pair) { return !own.contains(pair.first) || !own.contains(pair.second); };
+    return effect.helps() && std::ranges::none_of(effect.before, is_of_others) &&
+           std::ranges::any_of(effect.after, is_of_others);
   }
 
  private:
-  [[nodiscard]] bool gains_area(std::uint32_t surface, const FlipEffect& effect) const {
+  [[nodiscard]] bool gains_area(std::span<const std::uint32_t> surfaces, const FlipEffect& effect) const {
     std::set<FaceId> own;
     std::set<std::size_t> patches;
-    for (const std::uint32_t piece : pieces_[surface]) own.insert(scene_.pieces()[piece].face);
+    for (const std::uint32_t s : surfaces) {
+      for (const std::uint32_t piece : pieces_[s]) own.insert(scene_.pieces()[piece].face);
+    }
     for (const auto& [first, second] : effect.gained()) patches.insert({first, second});
     double inside = 0.0, gained = 0.0;
     for (std::size_t f = 0; f < scene_.faces().size(); ++f) {
@@ -147,21 +170,58 @@ class InwardSurfaces {
   std::uint64_t triangles_ = 0;
 };
 
+// Where boxes touch, such as a table and its leg, a front of one that is turned alone would lie on a front of the
+// other: those are tried together.
+std::vector<std::uint32_t> boxes_to_turn(TurnedSurfaces& surfaces, FlipTrials& trials) {
+  std::vector<std::uint32_t> better, together;
+  for (const std::uint32_t box : surfaces.boxes()) {
+    const std::span<const std::uint32_t> one(&box, 1);
+    const FlipEffect effect = trials.try_flip(surfaces.selections(one));
+    const bool alone = surfaces.are_better_turned(one, effect);
+    if (alone) better.push_back(box);
+    if (alone || effect.stacks) together.push_back(box);
+  }
+  if (together.size() < 2) return better;
+  const FlipEffect effect = trials.try_flip(surfaces.selections(together));
+  if (surfaces.are_better_turned(together, effect)) return together;
+  return better.size() < 2 || trials.try_flip(surfaces.selections(better)).helps() ? better
+                                                                                   : std::vector<std::uint32_t>();
+}
+
+Finding finding_of(const Scene& scene, Kind kind, const TurnedSurfaces& surfaces,
+                   const std::vector<std::uint32_t>& found, const std::string& what, const std::string& why) {
+  Finding finding{.kind = kind, .objects = surfaces.selections(found)};
+  finding.flag = flag_to_flip(scene, finding.objects);
+  finding.words = {
+      .what = text::counted(found.size(), "closed surface") + ' ' + what + ": " + listed(scene, finding.objects),
+      .why = why,
+      .suggestion = words_to_flip(scene, finding.objects)};
+  return finding;
+}
+
 }  // namespace
 
 std::optional<Finding> inward_surfaces(const Scene& scene, FlipTrials& trials) {
-  InwardSurfaces surfaces(scene);
-  std::vector<std::uint32_t> wrong = surfaces.find();
-  std::erase_if(wrong, [&](std::uint32_t surface) { return !surfaces.is_better_turned(surface, trials); });
-  Finding finding{.kind = Kind::kInwardSurface, .objects = surfaces.selections(wrong)};
-  if (wrong.empty() || (wrong.size() > 1 && !trials.try_flip(finding.objects).helps())) return std::nullopt;
-  finding.flag = flag_to_flip(scene, finding.objects);
-  finding.words = {.what = text::counted(wrong.size(), "closed surface") + (wrong.size() == 1 ? " looks" : " look") +
-                           " inward and enclose" + (wrong.size() == 1 ? "s" : "") +
-                           " no other face: " + listed(scene, finding.objects),
-                   .why = "its outer side is its back, which emits nothing and receives nothing",
-                   .suggestion = words_to_flip(scene, finding.objects)};
-  return finding;
+  TurnedSurfaces surfaces(scene);
+  const std::vector<std::uint32_t> boxes = boxes_to_turn(surfaces, trials);
+  if (boxes.empty()) return std::nullopt;
+  return finding_of(
+      scene, Kind::kInwardSurface, surfaces, boxes,
+      boxes.size() == 1 ? "looks inward and encloses no other face" : "look inward and enclose no other face",
+      "its outer side is its back, which emits nothing and receives nothing");
+}
+
+std::optional<Finding> outward_rooms(const Scene& scene, FlipTrials& trials) {
+  TurnedSurfaces surfaces(scene);
+  std::vector<std::uint32_t> rooms = surfaces.rooms();
+  std::erase_if(rooms, [&](std::uint32_t room) {
+    return !surfaces.is_better_turned(room, trials.try_flip(surfaces.selections(std::span(&room, 1))));
+  });
+  if (rooms.empty()) return std::nullopt;
+  return finding_of(scene, Kind::kOutwardRoom, surfaces, rooms,
+                    rooms.size() == 1 ? "looks outward, and all that sees it stands in it"
+                                      : "look outward, and all that sees them stands in them",
+                    "its inner side is its back, which emits nothing and receives nothing");
 }
 
 }  // namespace exactff::slips
