@@ -9,7 +9,7 @@ namespace {
 
 bool is_a_name(const Scene& scene, const std::string& text) {
   try {
-    (void)scene.select(text);
+    (void)scene.select_all(text);
     return true;
   } catch (const InputError&) {
     return false;
@@ -55,11 +55,8 @@ std::vector<Selection> selections_named(const Scene& scene, const std::vector<st
   std::vector<Selection> selections;
   for (const std::string& text : texts) {
     const std::vector<std::string> parts = split_list(text);
-    if (parts.size() > 1 && is_a_name(scene, text)) {
-      selections.push_back(scene.select(text));
-    } else {
-      for (const std::string& name : parts) add(scene, name, selections);
-    }
+    const bool is_one_name = parts.size() > 1 && is_a_name(scene, text);
+    for (const std::string& name : is_one_name ? std::vector{text} : parts) add(scene, name, selections);
   }
   return selections;
 }

@@ -45,6 +45,16 @@ void require_scene(const Scene& scene, const SolutionFile& file) {
                "use the file as `exactff radiosity` wrote it");
 }
 
+// Of a patch of which no more radiosities are wanted.
+std::string what_is_wrong_with(const std::string& patch, const Radiosities& all, const Scene& scene) {
+  const std::string name = text::in_quotes(patch, text::kShownName);
+  const auto has_name = [&](const Selection& one) { return scene.name_of(one) == patch; };
+  if (std::ranges::any_of(all.patches, has_name)) return "has a radiosity of " + name + " twice in one channel";
+  const auto is_it = [&](const Patch& one) { return one.name == patch; };
+  const bool exists = std::ranges::any_of(scene.patches(), is_it);
+  return "has a radiosity of " + name + (exists ? ", which has no area" : ", which is no patch of the scene");
+}
+
 }  // namespace
 
 Radiosities radiosities_of(const Solution& solution) {
@@ -61,15 +71,13 @@ Radiosities radiosities_of(const Scene& scene, const SolutionFile& file) {
   require_scene(scene, file);
   Radiosities all = of_patches(patches_of(scene));
   all.name = std::filesystem::path(file.file).filename().string();
-  std::map<std::pair<std::string, std::size_t>, std::size_t> wanted;
+  std::map<std::pair<std::string, std::size_t>, std::size_t> wanted;  // a channel of a patch
   for (std::size_t i = 0; i < all.patches.size(); ++i) {
     for (std::size_t c = 0; c < kColours.size(); ++c) wanted.emplace(std::pair(scene.name_of(all.patches[i]), c), i);
   }
   for (const SolutionFile::Row& row : file.rows) {
     const auto found = wanted.find({row.patch, row.channel});
-    if (found == wanted.end()) {
-      refuse_row(file, "has " + text::in_quotes(row.patch, text::kShownName) + " twice, or as a patch without area");
-    }
+    if (found == wanted.end()) refuse_row(file, what_is_wrong_with(row.patch, all, scene));
     if (std::isinf(row.radiosity.upper)) refuse_unbounded(file.file, row.channel);
     set(all, found->second, row.channel, row.radiosity);
     wanted.erase(found);

@@ -50,9 +50,9 @@ void require_possible(const Scene& scene, double length) {
                  "give the largest length that a side of a cell may have");
   }
   if (const double cells = expected_cells(scene, length); !(cells <= kMostCells)) {
-    text::refuse(
-        "divided by " + text::shortest(length) + ", the scene has about " + text::short_number(cells) + " cells",
-        "at most " + text::short_number(kMostCells) + " are made", "give a larger length");
+    const std::string about = std::isfinite(cells) ? "about " + text::short_number(cells) : "more than 1e308";
+    text::refuse("divided by " + text::shortest(length) + ", the scene has " + about + " cells",
+                 "at most " + text::short_number(kMostCells) + " are made", "give a larger length");
   }
   if (length < kLeastShare * extent(scene).largest) {
     text::refuse("the length " + text::shortest(length) + " is too small for the scene's coordinates",

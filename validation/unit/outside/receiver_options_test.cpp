@@ -173,6 +173,9 @@ TEST_F(ReceiverFlags, AFileIsCalledByItsName) {
 TEST_F(ReceiverFlags, SeveralPatchesMayCarryReceivers) {
   EXPECT_EQ(truth({"--on", "floor,lid:1", "--centres"}).ids(), (Words{"floor:1", "lid:1"}));
   EXPECT_EQ(truth({"--on", "a,b", "--centres"}).ids(), (Words{"\"a,b:1\""}));
+  const Words cells = truth({"--divide", "2", "--on", "a,b", "--centres"}).ids();
+  EXPECT_GT(cells.size(), 2U);
+  for (const std::string& cell : cells) EXPECT_EQ(cell.substr(0, 5), "\"a,b:") << cell;
 }
 
 TEST_F(ReceiverFlags, AllIsEveryPatchWithArea) {

@@ -257,7 +257,11 @@ TEST_F(SolutionFiles, OfOtherScenesOrWithoutBoundsAreRefused) {
   EXPECT_EQ(said(scene, text), "");
   EXPECT_NE(said(furnace(), text).find("another scene"), std::string::npos);
   EXPECT_NE(said(divided(scene, 0.5).scene, text).find("another scene"), std::string::npos);
-  EXPECT_NE(said(scene, replaced(text, "ceiling,green", "floor,green")).find("twice"), std::string::npos);
+  EXPECT_NE(said(scene, replaced(text, "ceiling,green", "floor,green")).find("of 'floor' twice in one channel"),
+            std::string::npos);
+  EXPECT_NE(
+      said(scene, replaced(text, "ceiling,green", "roof,green")).find("of 'roof', which is no patch of the scene"),
+      std::string::npos);
   EXPECT_NE(said(scene, text.substr(0, text.find("lamp,"))).find("no radiosity of 'lamp'"), std::string::npos);
   EXPECT_NE(said(scene, replaced(text, "# scene hash", "# hash")).find("to which scene"), std::string::npos);
   EXPECT_NE(said(scene, replaced(text, "lamp,red,4", "lamp,red,5")).find("within its bounds"), std::string::npos);
@@ -268,6 +272,15 @@ TEST_F(SolutionFiles, OfOtherScenesOrWithoutBoundsAreRefused) {
   unbounded.erase(comma, unbounded.find(',', comma) - comma);
   const std::string whole = text.substr(row, text.find('\n', row) - row);
   EXPECT_NE(said(scene, replaced(text, whole, unbounded)).find("no bound for blue"), std::string::npos);
+}
+
+TEST_F(SolutionFiles, WithPatchesWithoutAreaAreRefused) {
+  generate::PlainScene plain = plain_plates();
+  plain.add_ring(plain.patch("thread"), {{0, 0, 2}, {1, 0, 2}, {1, 0, 2}});
+  const Scene scene = generate::build(plain);
+  const std::string text = csv_text(scene, solve(scene, {.factors = {.accuracy = 1e-2}}), {});
+  EXPECT_NE(said(scene, replaced(text, "ceiling,green", "thread,green")).find("of 'thread', which has no area"),
+            std::string::npos);
 }
 
 class AllTheLight : public testing::Test {
@@ -300,6 +313,17 @@ TEST_F(AllTheLight, OfADividedSceneComesFromItsFile) {
       run({"render", EXACTFF_DATA_DIR "/scenes/blinds_room.obj", "--radiosity", file("s.csv"), "-o", file("b.png")}),
       2);
   EXPECT_EQ(run({"render", scene_, "--radiosity", file("s.csv"), "--source", "lamp", "-o", file("b.png")}), 2);
+}
+
+// With radiosities from a file, a dark source does not count with a radiosity of 1.
+TEST_F(AllTheLight, NamesOfSourcesChangeOnlyTheColumns) {
+  ASSERT_EQ(run({"radiosity", scene_, "--accuracy", "1e-2", "-o", file("s.csv")}), 0);
+  const auto said = [&](std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"truth", scene_, "--on", "floor", "--grid", "2x2", "--source", "ceiling", "--force"});
+    return validation::run_program(EXACTFF_PROGRAM, flags).error();
+  };
+  EXPECT_NE(said({"-o", file("t.csv")}).find("counts with a radiosity of 1"), std::string::npos);
+  EXPECT_EQ(said({"-o", file("u.csv"), "--radiosity", file("s.csv")}).find("radiosity of 1"), std::string::npos);
 }
 
 TEST_F(AllTheLight, InATruthFileIsTheIrradianceWithBounds) {
