@@ -8,10 +8,9 @@
 // near enough, no piece of S is met. That holds for a piece with no corner in front of the part's plane. Otherwise the
 // piece must not meet the part's interior, and does not in two cases:
 // - The part lies on one side of the piece's plane, not all of it in that plane.
-// - The plane through an edge of the part, along the part's normal, has all of the piece's corners on its outer side,
-// or
-//   in it. If no corner lies behind the part's plane, only those in it count: their convex hull is what the piece has
-//   in common with that plane.
+// - The plane through an edge of the part, along the part's normal, has all of the piece's corners on its outer side
+//   or in it. If no corner lies behind the part's plane, only those in it count: their convex hull is what the piece
+//   has in common with that plane.
 #pragma once
 
 #include <vector>
