@@ -12,8 +12,7 @@
 // 1. back, open >= 0: no factor of their products is negative.
 // 2. absorbed >= 0 if every rho_i <= 1: likewise.
 // 3. absorbed + back + open <= emitted if every rho_i <= 1: P_(N+1) >= 0 for every N, and the three sums over the
-// bounces
-//    do not fall. This holds even where B is infinite.
+//    bounces do not fall. This holds even where B is infinite.
 // 4. absorbed + back + open = emitted if B is finite: P_n -> 0. No rho is limited.
 // So each of the three is at most emitted less the others' lower bounds (3 or 4), and at least emitted less the others'
 // upper bounds (4). 3 and 4 need reciprocity and rows that add up to 1; Solution::reasons_against_balance is empty

@@ -2,10 +2,10 @@
 //
 // A pixel belongs to the polygon that the ray from x through its centre meets first. A polygon with corners p_k is seen
 // there if
-//   E_k(D) = s D . (p_k x p_k+1) > 0  for every side k, D = (column, row, n) of the centre in integers, s = +-1 so
-// that E is positive within. Its nearness along D is N . D / d, with the plane N . p = d. No corner is projected, so
-// polygons that reach behind x are no special case; the polygon is clipped to a face's frustum only to find the rows
-// and columns to test.
+//   E_k(D) = s D . (p_k x p_k+1) > 0  for every side k, D = (column, row, n) of the centre in integers,
+// s = +-1 so that E is positive within. Its nearness along D is N . D / d, with the plane N . p = d. No corner is
+// projected, so polygons that reach behind x are no special case; the polygon is clipped to a face's frustum only to
+// find the rows and columns to test.
 //
 // Ties: a centre on a side belongs to the polygon that lies towards greater columns from it, or, if the side runs along
 // the row, towards greater rows. Two polygons that share the side compute it from the same two corners, so that E

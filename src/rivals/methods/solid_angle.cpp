@@ -9,8 +9,7 @@
 //   tan(W / 2) = det / (|A| |B| |C| + (A.B) |C| + (B.C) |A| + (C.A) |B|),   det = twice the area times the height of x.
 //
 //   1. Take the point C' = A + t e for which (A, B, C') has the solid angle u W. In the formula above for C', |C'| is
-//   the
-//      only square root. With it alone on one side, the square of the equation is linear in t.
+//      the only square root. With it alone on one side, the square of the equation is linear in t.
 //   2. Take the point on the arc from B to C' whose angle T from B has 1 - cos T = v (1 - cos(B, C')), as Arvo does. It
 //      is the point of the plane that divides the side from B to C' in the ratio of two sines.
 // Nothing is subtracted from nearly the same, so that small and far triangles lose no digits. Small rectangles are

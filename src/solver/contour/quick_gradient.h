@@ -5,8 +5,8 @@
 // x, b = a + d the other one. An edge is the image of the line through a and b, and with C = a x d its nearness is g =
 // d x C / |C|^2, since g . d = 0 and g . a = C . (a x d) / |C|^2 = 1. Hence
 //   n . g = (n x d) . C / |C|^2,   C . (w x g) = -(w . d)   for w in the plane of the edge,
-// and 2 I of a piece from p to q (arc_sum.h), with theta positive from a to b, is theta A + (psi(q) - psi(p)) / |C|
-// with
+// and 2 I of a piece from p to q (arc_sum.h), with theta positive from a to b, is
+// theta A + (psi(q) - psi(p)) / |C| with
 //   A = (n x d) . C / |C|^2,   psi(w) = (w . n) (w . d) / w . w.
 // Its terms are -C (theta A / |C| + (psi(q) - psi(p)) / |C|^2) for dF/dx and -C theta / |C| for V. They keep their form
 // for a piece from b towards a, whose theta and difference are negative. V is a sum of vectors without units; dF/dx is

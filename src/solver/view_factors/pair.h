@@ -60,8 +60,7 @@ class Pair {
     double area = 0.0;  // of the receiver's patch
   };
   // Where the source part is whole faces, `whole` is these, or lies all around the scene: a point factor to it checks
-  // each cell. `id` tells the
-  // pairs apart that share the memory.
+  // each cell. `id` tells the pairs apart that share the memory.
   Pair(const Scene& scene, Sight sight, std::vector<FaceId> receiver_faces, std::shared_ptr<const ExactSource> whole,
        PairMemory& memory, std::size_t id);
 

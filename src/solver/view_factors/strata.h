@@ -96,8 +96,7 @@ struct Ranges {
 // bounds of the error hold together with a probability of 1 - risk:
 //
 //   Bernstein     e = r L / 3 + sqrt((r L / 3)^2 + 2 V L),  L = log(8 / risk). V is not known, but a sum S of
-//   independent
-//                 numbers in [0, r^2] falls below its mean M by t or more with a probability of at most
+//                 independent numbers in [0, r^2] falls below its mean M by t or more with a probability of at most
 //                 exp(-t^2 / (2 r^2 M)) (Maurer, J. Inequal. Pure Appl. Math. 4(1), 2003). So with S the sum of the
 //                 D_s and l = log(4 / risk), sqrt(V) <= sqrt(M) <= (sqrt(2 r^2 l) + sqrt(2 r^2 l + 4 S)) / 2, except
 //                 with a probability of risk / 4. (As Maurer and Pontil, "Empirical Bernstein Bounds", COLT 2009, but

@@ -1,7 +1,7 @@
 // The view factor from patch i to patch j.
 //
-//   A_i F_ij = integral over patch i of F(x -> j) dA,   upper - lower <= accuracy for F_ij and for F_ji = A_i F_ij /
-//   A_j
+//   A_i F_ij = integral over patch i of F(x -> j) dA,   upper - lower <= accuracy for F_ij and for
+//                                                       F_ji = A_i F_ij / A_j
 //
 // 1. Cut both patches into convex parts that do not overlap (patch_parts.h), once for all of their factors.
 // 2. Of the parts that may see each other (seen_parts.h), cut one of each pair into cells (pair_choice.h, pair.h), so

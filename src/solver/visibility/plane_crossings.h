@@ -1,5 +1,5 @@
-// The point where the segment between two vertices crosses a plane (the source's plane or the horizon), as a direction
-// from x.
+// The point where the segment between two vertices crosses a plane (the source's plane or the horizon), as a
+// direction from x.
 //
 // With g(y) = N . (y - s), s a point of the plane, N its normal, and g(p), g(q) of different signs, the point lies in
 // direction

@@ -10,10 +10,9 @@
 //   2. pairs of edges whose images are near each other: the points where they meet, by exact signs;
 //   3. c beside one point of a part: by the pieces that the ray through this point meets;
 //   4. from there along the part, and on along the parts that begin where it ends, if nothing else meets there; along
-//   an
-//      edge of the source, and on along the parts that leave it. A silhouette bounds V where c is 0 on one side alone,
-//      an edge of the source where c is 0 on its left. Of edges that coincide, the one with the lowest index represents
-//      all.
+//      an edge of the source, and on along the parts that leave it. A silhouette bounds V where c is 0 on one side
+//      alone, an edge of the source where c is 0 on its left. Of edges that coincide, the one with the lowest index
+//      represents all.
 //
 // Edges and directions are less than a half turn apart, but two planes through x meet in two opposite directions. If e
 // crosses g's line from right to left, then g crosses e's line from left to right if they meet in the same direction,
