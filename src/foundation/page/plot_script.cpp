@@ -130,10 +130,10 @@ std::string x_range(const Axes& axes, const std::vector<Points>& drawn) {
   return "set xrange [" + text::shortest(*low / kXMargin) + ':' + text::shortest(*high * kXMargin) + "]\n";
 }
 
-// gnuplot 6 also writes a number, 10^1 or 10^2, at minor tics of a logarithmic axis of less than two decades. There the
-// tics are listed, in the way in which gnuplot 5 draws them.
+// gnuplot 6 also writes a number, 10^1 or 10^2, at minor tics of a logarithmic axis on which there are fewer than three
+// powers of ten. There the tics are listed, in the way in which gnuplot 5 draws them.
 std::string decimal_tics(const char* axis, double low, double high) {
-  if (std::log10(high) - std::log10(low) >= 2.0) return {};
+  if (std::floor(std::log10(high)) - std::ceil(std::log10(low)) >= 2.0) return {};
   std::string tics;
   const int last = static_cast<int>(std::ceil(std::log10(high)));
   for (int power = static_cast<int>(std::floor(std::log10(low))); power <= last; ++power) {

@@ -184,8 +184,10 @@ TEST(LinePlot, OfOnePointHasReadableAxesAndTheMark) {
       << script;
   EXPECT_NE(script.find(" '10^{2}' 1e2)\nset yrange [1e-2:1e-1]\n"), std::string::npos) << script;
   EXPECT_NE(script.find(" set ytics ('10^{−2}' 1e-2, '' 2e-2 1, "), std::string::npos) << script;
-  const std::string two_decades = page::line_plot(axes, {{"X", {{60.0, 0.02}, {70.0, 0.2}}, 1}});
-  EXPECT_EQ(two_decades.find("set ytics"), std::string::npos) << two_decades;
+  const std::string three_powers = page::line_plot(axes, {{"X", {{60.0, 0.02}, {70.0, 0.2}}, 1}});
+  EXPECT_EQ(three_powers.find("set ytics"), std::string::npos) << three_powers;
+  const std::string two_powers = page::line_plot(axes, {{"X", {{4.0, 0.02}, {256.0, 0.2}}, 1}});  // from 2.7 to 384
+  EXPECT_NE(two_powers.find("set xtics ('10^{0}' 1e0, "), std::string::npos) << two_powers;
   const std::string wide = page::line_plot(axes, {{"X", {{6.0, 0.02}, {600.0, 0.2}}, 1}});
   EXPECT_EQ(wide.find("set xrange [1e"), std::string::npos) << wide;
   EXPECT_EQ(wide.find("set yrange"), std::string::npos) << wide;
