@@ -36,6 +36,7 @@ def test_a_matrix_is_the_programs(tmp_path):
     for array, column in (matrix.value, "factor"), (matrix.lower, "lower"), (matrix.upper, "upper"):
         assert array.shape == (8, 8) and same_bits(array.ravel(), [float(row[column]) for row in between])
     assert list(matrix.claim.ravel()) == [row["claim"] for row in between] and matrix.accurate.all()
+    assert set(matrix.limit.ravel()) == {"none"}
     assert matrix.from_names == matrix.to_names == scene.names
     assert told[-1][0] == told[-1][1] and matrix.row_sums.shape == (8, 2)
     assert (matrix.row_sums[:, 0] <= 1).all() and (matrix.row_sums[:, 1] >= 1).all()
@@ -109,7 +110,7 @@ def test_some_rows_and_columns():
 def test_a_budget_that_is_used_up_warns():
     with pytest.warns(exactff.ModellingWarning, match="wider than the accuracy 1e-09"):
         f = exactff.view_factor(ROOM, "floor", "tall_block", 1e-9, budget=2)
-    assert not f.accurate and f.upper - f.lower > 1e-9
+    assert not f.accurate and f.upper - f.lower > 1e-9 and f.limit == "budget"
 
 
 @pytest.mark.parametrize("call", [

@@ -9,10 +9,10 @@
 namespace exactff::python {
 namespace {
 
-// Value, lower, upper, claim, way, accurate, area_from, area_to, cells, event_cells.
+// Value, lower, upper, claim, way, accurate, area_from, area_to, cells, event_cells, limit.
 py::tuple to_tuple(const ViewFactor& f) {
   return py::make_tuple(f.value, f.lower, f.upper, std::string(to_string(f.claim)), std::string(to_string(f.way)),
-                        f.accurate, f.area_from, f.area_to, f.cells, f.event_cells);
+                        f.accurate, f.area_from, f.area_to, f.cells, f.event_cells, std::string(to_string(f.limit)));
 }
 
 py::tuple view_factor_of(const SharedScene& scene, const std::string& from, const std::string& to, double accuracy,

@@ -31,6 +31,7 @@ class ViewFactor(NamedTuple):
     area_to: float
     cells: int
     event_cells: int  #: cells on which the order of three edges is undecided
+    limit: str  #: why it is not accurate: "budget", "crowd" (too much between for the memory), "rounding"; else "none"
 
     def __float__(self) -> float:
         return self.value
@@ -70,6 +71,7 @@ class ViewFactorMatrix:
     claim: NDArray[np.str_]  #: (n, m)
     way: NDArray[np.str_]  #: (n, m)
     accurate: NDArray[np.bool_]  #: (n, m)
+    limit: NDArray[np.str_]  #: (n, m); why an entry is not accurate
     areas_from: Floats  #: (n,)
     areas_to: Floats  #: (m,)
     back: Optional[tuple[ViewFactor, ...]]  #: for each row what meets backs of faces
@@ -220,7 +222,7 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
     return ViewFactorMatrix(
         tuple(rows), tuple(columns), array(lambda f: f.value, np.float64), array(lambda f: f.lower, np.float64),
         array(lambda f: f.upper, np.float64), array(lambda f: f.claim, np.str_),
-        array(lambda f: f.way, np.str_), array(lambda f: f.accurate, np.bool_),
+        array(lambda f: f.way, np.str_), array(lambda f: f.accurate, np.bool_), array(lambda f: f.limit, np.str_),
         np.array([row[0].area_from for row in (by_rows if columns else zip(lists[0] or lists[1] or ()))]),
         np.array([f.area_to for f in by_rows[0]] if by_rows else []), lists[0], lists[1],
         np.array(sums, np.float64).reshape(-1, 2), tuple(reasons), reciprocity, by_rows)
