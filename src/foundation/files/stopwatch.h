@@ -1,12 +1,20 @@
-// Times of calls on a steady clock, in seconds.
+// Times of calls in seconds, on a steady clock or of the processor.
 #pragma once
 
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <ctime>
 #include <vector>
 
 namespace exactff::files {
+
+// Processor time of this thread, which does not depend on what else the machine does.
+inline double thread_seconds() {
+  timespec time{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 template <class Call>
 double seconds_of(const Call& call) {

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <memory>
 #include <mutex>
 
 #include "files/parallel.h"
+#include "files/stopwatch.h"
 #include "jobs/kept_work.h"
 #include "kernel/float_environment.h"
 #include "kernel/numbers.h"
@@ -18,13 +18,6 @@
 
 namespace exactff::render {
 namespace {
-
-// Processor time of this thread: a time that does not depend on what else the machine does.
-double thread_seconds() {
-  timespec time{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 constexpr int kTileSide = 16;
 
@@ -76,13 +69,13 @@ class Brush {
   explicit Brush(const Job& job) : job_(job), painter_(job) {}
 
   void paint(const Tile& tile, TileResult& result) {
-    const double start = thread_seconds();
+    const double start = files::thread_seconds();
     result = {};
     result.numbers.reserve(static_cast<std::size_t>(tile.width * tile.height) * job_.numbers_per_pixel());
     for (int row = tile.top; row < tile.top + tile.height; ++row) {
       for (int column = tile.left; column < tile.left + tile.width; ++column) paint_pixel(column, row, result);
     }
-    result.seconds = thread_seconds() - start;
+    result.seconds = files::thread_seconds() - start;
   }
 
  private:

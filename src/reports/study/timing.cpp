@@ -33,12 +33,6 @@ constexpr std::size_t kFewestReceivers = 12;
 // A planned time is this many times the true one, or less: prices of rays and samples are high, those of pixels low.
 double overpriced(const methods::Method& method) { return method.all_sources_at_once ? 0.5 : 4.0; }
 
-double thread_seconds() {
-  timespec time{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 // Evaluates one setting, and knows how often to repeat it at each receiver.
 class Subject {
  public:
@@ -59,8 +53,8 @@ class Subject {
     if (repeats_.size() <= place) repeats_.resize(place + 1, 0);
     int& repeats = repeats_[place];
     if (repeats == 0 || repeats == kByProcessorTime) {
-      const double start = thread_seconds();
-      const double once = files::seconds_of([&] { evaluate(receiver); }), of_thread = thread_seconds() - start;
+      const double start = files::thread_seconds();
+      const double once = files::seconds_of([&] { evaluate(receiver); }), of_thread = files::thread_seconds() - start;
       if (repeats == 0) {
         repeats = once > kLong ? kByProcessorTime
                                : static_cast<int>(std::ceil(kShortest / std::max(kShortest / 100.0, once)));
