@@ -11,8 +11,6 @@
 // no such warming up.
 #include "study/timing.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
