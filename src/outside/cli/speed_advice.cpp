@@ -5,6 +5,8 @@
 #include <iostream>
 #include <vector>
 
+#include "matrix/entry_jobs.h"
+#include "text/escape.h"
 #include "text/nearest_names.h"
 #include "text/phrases.h"
 
@@ -21,9 +23,13 @@ void LateNote::tell_if_late() {
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
   if (elapsed.count() < kLate || told_) return;
   const double left = elapsed.count() * (1.0 - share_done_) / share_done_;  // infinite as long as nothing is done
-  if (left < kLate || told_.exchange(true)) return;
+  if (left < kLate) return;
+  const std::string slow = matrix::EntryJobs::slow_of_thread(kSlow);
+  if (slow.empty() && elapsed.count() < kLate + kSlow) return;  // another thread may have a name to tell
+  if (told_.exchange(true)) return;
+  const std::string what = slow.empty() ? "" : "It is slow " + text::printable(slow) + ". ";
   const std::string clear_line = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
-  std::cerr << clear_line + "note: this takes more than " + text::short_number(kLate) + " s. " + text_ + '\n';
+  std::cerr << clear_line + "note: this takes more than " + text::short_number(kLate) + " s. " + what + text_ + '\n';
 }
 
 std::string words_on_speed(const MatrixWork& work) {

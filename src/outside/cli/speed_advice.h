@@ -13,7 +13,8 @@
 
 namespace exactff::cli {
 
-// A note that is printed once, on stderr, if the work is neither done after some seconds nor soon will be.
+// A note that is printed once, on stderr, if the work is neither done after some seconds nor soon will be. It names the
+// pair that takes long.
 class LateNote {
  public:
   explicit LateNote(std::string text) : text_(std::move(text)) {}
@@ -22,7 +23,7 @@ class LateNote {
   void tell_if_late();                    // from any thread, every few milliseconds
 
  private:
-  static constexpr double kLate = 5.0;  // seconds
+  static constexpr double kLate = 5.0, kSlow = 1.0;  // seconds, of all the work and of a pair
 
   const std::string text_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -1,6 +1,8 @@
 #include "matrix/entry_jobs.h"
 
 #include <algorithm>
+#include <chrono>
+#include <utility>
 
 #include "kernel/float_environment.h"
 #include "kernel/outward.h"
@@ -66,6 +68,29 @@ ViewFactor factor_of(const view_factors::Pairs& pairs, std::size_t entry) {
   return result;
 }
 
+// What this thread is computing.
+class AtWork {
+ public:
+  AtWork(const EntryJobs& jobs, std::size_t job) : jobs_(jobs), job_(job), before_(std::exchange(of_thread, this)) {}
+  ~AtWork() { of_thread = before_; }
+  AtWork(const AtWork&) = delete;
+  AtWork& operator=(const AtWork&) = delete;
+
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  [[nodiscard]] std::string name() const { return jobs_.name(job_); }
+
+  static thread_local const AtWork* of_thread;
+
+ private:
+  const EntryJobs& jobs_;
+  const std::size_t job_;
+  const AtWork* before_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+thread_local const AtWork* AtWork::of_thread = nullptr;
+
 ViewFactorOptions options_beside(const Options& options) {
   ViewFactorOptions result = options.factors;
   result.budget = std::min(result.budget, options.budget_beside);
@@ -124,7 +149,8 @@ ViewFactor EntryJobs::factor_to_backs(std::size_t row) const {
 }
 
 void EntryJobs::compute(std::size_t job, const std::function<void(std::size_t, const ViewFactor&)>& take) const {
-  const kernel::StandardArithmetic of_thread;
+  const kernel::StandardArithmetic arithmetic;
+  const AtWork at_work(*this, job);
   const std::vector<std::size_t> entries = entries_of(job);
   if (job < pairs_.count()) {
     std::size_t next = 0;
@@ -139,6 +165,11 @@ void EntryJobs::compute(std::size_t job, const std::function<void(std::size_t, c
   } else {
     take(entries.front(), factor_of(*to_sky_, row));
   }
+}
+
+std::string EntryJobs::slow_of_thread(double seconds) {
+  const AtWork* const at_work = AtWork::of_thread;
+  return at_work != nullptr && at_work->seconds() >= seconds ? at_work->name() : std::string();
 }
 
 std::string EntryJobs::name_of_column(std::size_t column) const {

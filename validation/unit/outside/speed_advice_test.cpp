@@ -50,11 +50,12 @@ TEST(SpeedAdvice, OfADraftSpeaksOfItsViews) {
   EXPECT_EQ(asked.words(false, matrix::DraftOptions().views), "");
 }
 
-// Once, on stderr, and only while it takes long.
+// Once, on stderr, only while it takes long, and with the name of the pair.
 TEST(SpeedAdvice, IsGivenOnceAfterSomeSeconds) {
   const validation::TemporaryDirectory directory;
   const RunningProgram slow(EXACTFF_PROGRAM,
-                            {"matrix", "@closed-room", "--threads", "2", "-o", directory.path() / "m.csv"},
+                            {"matrix", EXACTFF_DATA_DIR "/scenes/blinds_room.obj", "--from", "floor", "--to", "window",
+                             "--threads", "2", "-o", directory.path() / "m.csv"},
                             directory.path() / "slow");
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
@@ -66,7 +67,8 @@ TEST(SpeedAdvice, IsGivenOnceAfterSomeSeconds) {
   slow.send(SIGINT);
   EXPECT_EQ(slow.wait(), 128 + SIGINT);
   const std::string said = slow.error();
-  EXPECT_TRUE(said.starts_with("note: this takes more than 5 s. Faster: --draft, whose entries are estimated; "))
+  EXPECT_TRUE(
+      said.starts_with("note: this takes more than 5 s. It is slow from 'floor' to 'window'. Faster: --draft, "))
       << said;
   EXPECT_EQ(said.find("note: "), said.rfind("note: ")) << said;
   const RunningProgram quick(EXACTFF_PROGRAM, {"matrix", "@closed-room", "--from", "lamp", "--to", "ceiling"},
