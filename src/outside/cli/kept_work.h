@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 
 #include "cli/long_run.h"
@@ -12,6 +13,8 @@ namespace exactff::cli {
 
 // "2/4"; one shard if the text is empty. Throws InputError.
 [[nodiscard]] jobs::Shard shard_of(const std::string& text);
+
+constexpr double kNeverSlow = std::numeric_limits<double>::infinity();  // seconds: where long rows are usual
 
 // Prints progress and messages while rows are computed.
 class Narrator {

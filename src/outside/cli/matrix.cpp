@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -335,8 +334,6 @@ matrix::Matrix compute(const MatrixArguments& args, const MatrixJob& job) {
   bar.clear();
   return result;
 }
-
-constexpr double kNeverSlow = std::numeric_limits<double>::infinity();  // long pairs are usual
 
 void print_summary(const MatrixArguments& args, const jobs::Summary& summary) {
   std::cout << text::counted(summary.rows, "pair") << " (" << summary.resumed << " of them were already computed)\n"

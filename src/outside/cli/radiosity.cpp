@@ -16,10 +16,12 @@
 #include "cli/command.h"
 #include "cli/exit_code.h"
 #include "cli/further_files.h"
+#include "cli/kept_work.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/text_table.h"
 #include "cli/view_factor_words.h"
+#include "exactff/jobs.h"
 #include "exactff/version.h"
 #include "flags/lists.h"
 #include "flags/scene.h"
@@ -54,6 +56,9 @@ constexpr const char* kRadiosityFooter =
     "--matrix FILE takes the view factors from a file of `exactff matrix SCENE --backs --to all,sky -o FILE`, a run "
     "that\n"
     "--resume continues and --shard and mpirun share out. One of another scene is refused.\n"
+    "With -o FILE, finished view factors are kept in FILE.factors.part until all is done; after an interruption, "
+    "--resume\n"
+    "continues from there.\n"
     "The balance is printed as bounds, [lower, upper], within what is possible; a number alone is rounded to six "
     "digits.\n"
     "\n"
@@ -73,8 +78,17 @@ struct RadiosityArguments {
   bool plain = false, json = false, csv = false;
   std::string output, vtk;
   std::string matrix;  // a file
-  bool force = false;
+  bool resume = false, force = false;
 
+  [[nodiscard]] jobs::Existing existing() const {
+    return resume ? jobs::Existing::kResume : force ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
+  }
+  // While they are computed, view factors are kept beside the file of -o. A pipe or a device has no journal.
+  [[nodiscard]] bool keeps_work() const {
+    std::error_code ignored;
+    return !output.empty() && matrix.empty() && !std::filesystem::is_other(output, ignored);
+  }
+  [[nodiscard]] std::string kept_factors() const { return output + ".factors"; }
   [[nodiscard]] bool for_people() const { return !plain && !json && !csv; }
   [[nodiscard]] radiosity::Origin origin() const { return {scene.divide, two_sided}; }
 };
@@ -253,9 +267,18 @@ void print_json(const RadiosityArguments& args, const Scene& scene, const Soluti
 // --- The command ---
 
 void check_outputs(const RadiosityArguments& args) {
+  if (args.resume && args.output.empty()) {
+    text::refuse("--resume is given without -o", "finished view factors are kept beside the file of -o",
+                 "name a file, for example -o radiosities.csv");
+  }
   if (!args.output.empty()) require_free_file(args.output, args.force);
   std::vector<OutputFile> before;
   if (!args.output.empty()) before.push_back({"-o", args.output});
+  if (args.keeps_work()) {
+    jobs::require_free(args.kept_factors(), args.existing());
+    before.push_back({"the view factors of -o", args.kept_factors()});
+    before.push_back({"their journal", jobs::journal_of(args.kept_factors())});
+  }
   check_output_files({{"--vtk", args.vtk}}, before, args.force);
 }
 
@@ -338,18 +361,51 @@ void require_matrix_of(const Scene& scene, const matrix::Table& table) {
                "compute it by exactff matrix SCENE --backs --to all,sky -o FILE");
 }
 
-// Computed, or of the file; `options` are then those of the file.
-matrix::Matrix view_factors_of(const RadiosityArguments& args, const Scene& scene,
-                               const std::vector<Selection>& patches, const Hooks& hooks, ViewFactorOptions& options) {
+// Nothing if it was interrupted.
+std::optional<matrix::Matrix> kept_view_factors(const RadiosityArguments& args, const matrix::Request& request) {
+  const std::string file = args.kept_factors();
+  Narrator narrator("pair");
+  try {
+    const InterruptWatch watch(words_of_interruption("pair", file));
+    (void)matrix::write(request, file, args.existing(), narrator.hooks(kNeverSlow), nullptr);
+  } catch (const Cancelled&) {
+    narrator.tell_what_is_kept("interrupted", file);
+    return std::nullopt;
+  } catch (...) {
+    narrator.tell_what_is_kept("stopped by the error below", file);
+    throw;
+  }
+  narrator.clear();
+  return matrix::read(request, file);
+}
+
+// Computed, or of the file; `options` are then those of the file. Nothing if finished ones are kept.
+std::optional<matrix::Matrix> view_factors_of(const RadiosityArguments& args, const Scene& scene,
+                                              const std::vector<Selection>& patches, const Hooks& hooks,
+                                              ViewFactorOptions& options) {
   if (args.matrix.empty()) {
-    return matrix::compute(scene, patches, patches, radiosity::matrix_options({options, args.threads}, patches.size()),
-                           hooks);
+    const matrix::Options of_matrix = radiosity::matrix_options({options, args.threads}, patches.size());
+    if (!args.keeps_work()) return matrix::compute(scene, patches, patches, of_matrix, hooks);
+    return kept_view_factors(args,
+                             {.scene = &scene, .from = patches, .to = patches, .options = of_matrix, .shard = {}});
   }
   const matrix::Table table = matrix::read_csv(args.matrix);
   require_matrix_of(scene, table);
   options = options_of(table);
   const matrix::Options with_all{.factors = options, .backs = true, .open = true};
   return matrix::read({.scene = &scene, .from = patches, .to = patches, .options = with_all, .shard = {}}, args.matrix);
+}
+
+void set_variation(const RadiosityArguments& args, const Scene& scene, Solution& solution, const Hooks& hooks) {
+  try {
+    radiosity::set_variation(scene, solution, args.threads, hooks);
+  } catch (const Cancelled&) {
+    if (args.keeps_work()) {
+      std::cerr << "note: all view factors are kept in " + text::printable(args.kept_factors()) +
+                       "; to continue, run the same command with --resume\n";
+    }
+    throw;
+  }
 }
 
 int run(const RadiosityArguments& given) {
@@ -363,12 +419,14 @@ int run(const RadiosityArguments& given) {
   }
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
-  const matrix::Matrix matrix = view_factors_of(args, scene, patches, hooks, args.factors);
-  Solution solution = radiosity::solve(scene, matrix);
-  radiosity::set_variation(scene, solution, args.threads, hooks);
+  const std::optional<matrix::Matrix> matrix = view_factors_of(args, scene, patches, hooks, args.factors);
+  if (!matrix) return exit_code_of_interruption();
+  Solution solution = radiosity::solve(scene, *matrix);
+  set_variation(args, scene, solution, hooks);
   bar.clear();
-  print_warnings(problems_of_width(scene, matrix::Matrix{matrix.factors, {}, {}}, args.factors));
+  print_warnings(problems_of_width(scene, matrix::Matrix{matrix->factors, {}, {}}, args.factors));
   if (!args.output.empty()) write_whole_file(args.output, csv_text(scene, solution, args.factors, args.origin()));
+  if (args.keeps_work()) std::filesystem::remove(args.kept_factors());
   if (!args.vtk.empty()) write_vtk(scene, solution, args.vtk);
   const bool balanced = test_balance(solution);
   warn_of_no_bound(solution);
@@ -388,6 +446,7 @@ void add_outputs(CLI::App& command, RadiosityArguments& args) {
   command.add_option("-o,--output", args.output, "Write a CSV file")->type_name("FILE");
   command.add_option("--vtk", args.vtk, "Write the scene with its radiosities for ParaView, as NAME.vtp or NAME.vtu")
       ->type_name("FILE");
+  command.add_flag("--resume", args.resume, "Continue an interrupted run with its kept view factors; needs -o");
   command.add_flag("--force", args.force, "Replace existing files");
 }
 

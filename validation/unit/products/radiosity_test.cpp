@@ -4,9 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -350,6 +354,41 @@ TEST_F(RadiosityCommand, TakesAFinishedMatrixOfTheSameScene) {
   EXPECT_EQ(command({"radiosity", scene, "--matrix", file("less.csv")}).exit_code, 2);
   EXPECT_EQ(command({"radiosity", scene, "--matrix", file("m.csv"), "--divide", "0.5"}).exit_code, 2);
   EXPECT_EQ(command({"radiosity", scene, "--matrix", file("m.csv"), "--accuracy", "1e-3"}).exit_code, 2);
+}
+
+TEST_F(RadiosityCommand, KeepsViewFactorsOnlyUntilItIsDone) {
+  const std::string scene = write(plates());
+  EXPECT_EQ(run(scene, {"-o", file("s.csv")}).exit_code, 0);
+  EXPECT_EQ(validation::text_of(file("s.csv")), run(scene, {"--csv"}).output);
+  EXPECT_FALSE(std::filesystem::exists(file("s.csv.factors")));
+  EXPECT_FALSE(std::filesystem::exists(file("s.csv.factors.part")));
+  EXPECT_EQ(run(scene, {"-o", file("s.csv"), "--resume"}).exit_code, 2) << "it is done";
+  EXPECT_EQ(run(scene, {"--resume"}).exit_code, 2);
+}
+
+TEST_F(RadiosityCommand, ContinuesAfterAnInterruption) {
+  const std::vector<std::string> words = {
+      "radiosity", EXACTFF_DATA_DIR "/scenes/cornell_box.obj", "--accuracy", "1e-4", "-o", file("s.csv")};
+  const validation::RunningProgram first(EXACTFF_PROGRAM, words, folder_.path() / "stderr");
+  const std::filesystem::path journal = file("s.csv.factors.part");
+  const auto has_some = [&] {
+    const std::string text = std::filesystem::exists(journal) ? validation::text_of(journal) : "";
+    return std::ranges::count(text, '\n') > 12;
+  };
+  while (!has_some() && !first.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  first.send(SIGINT);
+  EXPECT_EQ(first.wait(), 128 + SIGINT);
+  EXPECT_NE(first.error().find("to continue, run the same command with --resume"), std::string::npos) << first.error();
+  EXPECT_FALSE(std::filesystem::exists(file("s.csv")));
+  EXPECT_EQ(validation::run_program(EXACTFF_PROGRAM, words).exit_code, 2) << "unless --resume or --force is given";
+  std::vector<std::string> again = words;
+  again.emplace_back("--resume");
+  EXPECT_EQ(validation::run_program(EXACTFF_PROGRAM, again).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(journal));
+  again = words;
+  again.resize(4);
+  again.emplace_back("--csv");
+  EXPECT_EQ(validation::text_of(file("s.csv")), validation::run_program(EXACTFF_PROGRAM, again).output);
 }
 
 // The plate above, alone and turned round, shines from its back.
