@@ -22,6 +22,7 @@ using kernel::cross;
 using kernel::difference;
 using kernel::dot;
 
+constexpr std::size_t kMostRooms = 8;                 // to be tried: flips share a limited number of rays
 constexpr std::size_t kMostPoints = 32;               // to be looked for inside a surface
 constexpr std::uint64_t kMostTriangles = 20'000'000;  // in all solid angles together: about a second
 
@@ -64,10 +65,10 @@ class TurnedSurfaces {
     return found;
   }
 
-  // That look outward and enclose something.
+  // The first few that look outward and enclose something.
   std::vector<std::uint32_t> rooms() {
     std::vector<std::uint32_t> found;
-    for (std::uint32_t s = 0; s < pieces_.size(); ++s) {
+    for (std::uint32_t s = 0; s < pieces_.size() && found.size() < kMostRooms; ++s) {
       if (!found_.surfaces()[s].turned_inside_out && encloses_anything(s)) found.push_back(s);
     }
     return found;
