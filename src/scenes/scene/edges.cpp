@@ -105,8 +105,8 @@ class SceneEdgesBuilder {
     const std::size_t count = result_.size();
     if (count == 0) return;
     find_bounds();
-    order_.resize(count);
-    std::iota(order_.begin(), order_.end(), 0U);
+    order_.reserve(count);
+    for (std::uint32_t edge = 0; edge < count; ++edge) order_.push_back({middle(edge), edge});
     result_.nodes_.reserve(2 * count / kLeafSize + 2);
     add_node(0, static_cast<std::uint32_t>(count));
     number_in_order();
@@ -127,13 +127,18 @@ class SceneEdgesBuilder {
     return {0.5 * a.x + 0.5 * b.x, 0.5 * a.y + 0.5 * b.y, 0.5 * a.z + 0.5 * b.z};
   }
 
+  struct Placed {
+    Vec3 middle;
+    std::uint32_t edge;
+  };
+
   const Scene& scene_;
   const std::span<const Piece> pieces_;
   const std::span<const Vec3> vertices_;
   SceneEdges& result_;
   std::vector<std::uint8_t> turned_;   // by piece
   std::vector<NormalBounds> normals_;  // by piece, after turning
-  std::vector<std::uint32_t> order_;   // edges, in the order of the leaves
+  std::vector<Placed> order_;          // edges, in the order of the leaves
 };
 
 void SceneEdgesBuilder::sort_uses() {
@@ -255,27 +260,26 @@ NormalBounds SceneEdgesBuilder::normals_of_edge(std::uint32_t edge) const {
 }
 
 void SceneEdgesBuilder::add_node(std::uint32_t first, std::uint32_t last) {
-  std::vector<std::uint32_t>& order = order_;
   const auto index = static_cast<std::uint32_t>(result_.nodes_.size());
   result_.nodes_.emplace_back();
   Box box;
   NormalBounds normals;
   if (last - first <= kLeafSize) {
-    box = box_of_edge(order[first]);
-    normals = normals_of_edge(order[first]);
+    box = box_of_edge(order_[first].edge);
+    normals = normals_of_edge(order_[first].edge);
     for (std::uint32_t i = first + 1; i < last; ++i) {
-      include(box, box_of_edge(order[i]));
-      include(normals, normals_of_edge(order[i]));
+      include(box, box_of_edge(order_[i].edge));
+      include(normals, normals_of_edge(order_[i].edge));
     }
   } else {
-    Box middles{middle(order[first]), middle(order[first])};
-    for (std::uint32_t i = first + 1; i < last; ++i) middles.include(middle(order[i]));
+    Box middles{order_[first].middle, order_[first].middle};
+    for (std::uint32_t i = first + 1; i < last; ++i) middles.include(order_[i].middle);
     const int axis = longest_axis(middles);
     const std::uint32_t half = first + (last - first) / 2;
-    std::nth_element(order.begin() + first, order.begin() + half, order.begin() + last,
-                     [&](std::uint32_t a, std::uint32_t b) {
-                       const double u = kernel::coordinate(middle(a), axis), v = kernel::coordinate(middle(b), axis);
-                       return u != v ? u < v : a < b;
+    std::nth_element(order_.begin() + first, order_.begin() + half, order_.begin() + last,
+                     [&](const Placed& a, const Placed& b) {
+                       const double u = kernel::coordinate(a.middle, axis), v = kernel::coordinate(b.middle, axis);
+                       return u != v ? u < v : a.edge < b.edge;
                      });
     add_node(first, half);
     const auto right = static_cast<std::uint32_t>(result_.nodes_.size());
@@ -302,7 +306,8 @@ void SceneEdgesBuilder::number_in_order() {
   std::vector<std::uint32_t> number(order_.size());
   edges.reserve(result_.edges_.size());
   uses.reserve(result_.uses_.size());
-  for (const std::uint32_t edge : order_) {
+  for (const Placed& placed : order_) {
+    const std::uint32_t edge = placed.edge;
     number[edge] = static_cast<std::uint32_t>(edges.size());
     edges.push_back({result_.edge(edge).a, result_.edge(edge).b, static_cast<std::uint32_t>(uses.size())});
     const auto own = result_.uses(edge);
