@@ -12,23 +12,6 @@ namespace {
 constexpr long kMantissaBits = std::numeric_limits<double>::digits;
 constexpr long kLowestExponent = std::numeric_limits<double>::min_exponent - kMantissaBits;  // of a denormal's last bit
 
-// floor(positive * 2^-exponent). Sets `compare_rest_with_half` to the sign of (the fraction cut off - 1/2).
-Integer scaled_quotient(const Rational& positive, long exponent, int& compare_rest_with_half) {
-  Integer numerator = positive.get_num();
-  Integer denominator = positive.get_den();
-  if (exponent >= 0) {
-    denominator <<= static_cast<mp_bitcnt_t>(exponent);
-  } else {
-    numerator <<= static_cast<mp_bitcnt_t>(-exponent);
-  }
-  Integer quotient;
-  Integer rest;
-  mpz_fdiv_qr(quotient.get_mpz_t(), rest.get_mpz_t(), numerator.get_mpz_t(), denominator.get_mpz_t());
-  rest <<= 1;
-  compare_rest_with_half = cmp(rest, denominator);
-  return quotient;
-}
-
 // |a| * 2^-shift, to nearest, ties to even.
 Integer rounded_shift(const Integer& a, long shift) {
   const auto bits = static_cast<mp_bitcnt_t>(shift);
@@ -49,22 +32,38 @@ double nearest_double(const Integer& a, long exponent) {
   return sign(a) < 0 ? -magnitude : magnitude;
 }
 
-double nearest_double(const Rational& value) {
-  if (sign(value) == 0) return 0.0;
-  const Rational magnitude = abs(value);
-  // Choose the exponent of the last bit so that the quotient has 53 or 54 bits, or is a denormal.
-  long exponent = bit_length(magnitude.get_num()) - bit_length(magnitude.get_den()) - kMantissaBits;
-  if (exponent < kLowestExponent) exponent = kLowestExponent;
-  int rest = 0;
-  Integer mantissa = scaled_quotient(magnitude, exponent, rest);
-  if (bit_length(mantissa) > kMantissaBits) {
-    ++exponent;
-    mantissa = scaled_quotient(magnitude, exponent, rest);
+// The quotient is cut to a whole number of 63 or 64 bits, at least ten more than a double has. So whether anything was
+// cut off matters only if the rest of the bits are those of one half.
+double nearest_double(const Integer& numerator, const Integer& denominator, long exponent) {
+  static_assert(sizeof(unsigned long) == sizeof(std::uint64_t));
+  constexpr long kWholeBits = 64;
+  EXACTFF_EXPECT(sign(denominator) > 0);
+  if (sign(numerator) == 0) return 0.0;
+  const long scale = kWholeBits - 1 - (bit_length(numerator) - bit_length(denominator));
+  Integer scaled, quotient, rest;
+  const auto divide = [&](const Integer& n, const Integer& d) {
+    mpz_tdiv_qr(quotient.get_mpz_t(), rest.get_mpz_t(), n.get_mpz_t(), d.get_mpz_t());
+  };
+  if (scale >= 0) {
+    mpz_mul_2exp(scaled.get_mpz_t(), numerator.get_mpz_t(), static_cast<mp_bitcnt_t>(scale));
+    divide(scaled, denominator);
+  } else {
+    mpz_mul_2exp(scaled.get_mpz_t(), denominator.get_mpz_t(), static_cast<mp_bitcnt_t>(-scale));
+    divide(numerator, scaled);
   }
-  if (rest > 0 || (rest == 0 && mpz_odd_p(mantissa.get_mpz_t()))) ++mantissa;
-  const double rounded = std::ldexp(mantissa.get_d(), static_cast<int>(exponent));  // exact, or overflows
-  return sign(value) < 0 ? -rounded : rounded;
+  const std::uint64_t whole = mpz_get_ui(quotient.get_mpz_t());  // of its magnitude
+  const long last = exponent - scale;                            // the power of two of its last bit
+  const long excess = std::max<long>(std::bit_width(whole) - kMantissaBits, kLowestExponent - last);
+  std::uint64_t kept = excess < kWholeBits ? whole >> excess : 0;
+  if (excess <= kWholeBits) {
+    const std::uint64_t half = std::uint64_t{1} << (excess - 1), cut = whole & (half | (half - 1));
+    if (cut > half || (cut == half && (sign(rest) != 0 || kept % 2 != 0))) ++kept;
+  }
+  const double magnitude = std::ldexp(static_cast<double>(kept), static_cast<int>(last + excess));  // or it overflows
+  return sign(numerator) < 0 ? -magnitude : magnitude;
 }
+
+double nearest_double(const Rational& value) { return nearest_double(value.get_num(), value.get_den(), 0); }
 
 Rational times_power_of_two(Rational value, long exponent) {
   const auto bits = static_cast<mp_bitcnt_t>(std::abs(exponent));

@@ -40,6 +40,8 @@ inline Rational to_rational(double value) {
 
 // Correctly rounded, ties to even, gradual underflow; overflow gives an infinity.
 double nearest_double(const Rational& value);
+// The same for numerator / denominator * 2^exponent. Requires a positive denominator.
+double nearest_double(const Integer& numerator, const Integer& denominator, long exponent);
 // The same for a * 2^exponent, which must not overflow.
 double nearest_double(const Integer& a, long exponent);
 

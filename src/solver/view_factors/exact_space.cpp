@@ -70,9 +70,8 @@ Point make_point(Homogeneous exact, const Units& units) {
   if (sgn(exact[3]) < 0) exact = opposite(std::move(exact));
   make_primitive(exact);
   const auto coordinate = [&](int i) {
-    if (exact[3] == 1) return kernel::nearest_double(exact[i], -units.shift);
-    kernel::Rational value(exact[i], exact[3]);  // perhaps not in lowest terms, which takes time
-    return kernel::nearest_double(kernel::times_power_of_two(std::move(value), -units.shift));
+    return exact[3] == 1 ? kernel::nearest_double(exact[i], -units.shift)
+                         : kernel::nearest_double(exact[i], exact[3], -units.shift);
   };
   const Vec3 at{coordinate(0), coordinate(1), coordinate(2)};
   const int bits = exact[3] == 1 ? bits_of(std::span(exact).first(3), units) : kManyBits;

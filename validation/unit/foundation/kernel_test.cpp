@@ -50,6 +50,33 @@ TEST(Numbers, NearestDoubleRoundsAsIeeeMultiplicationAndDivisionDoDenormalsInclu
   }
 }
 
+Integer any_integer(Random& random, int bits) {
+  Integer result(1);
+  for (int i = 0; i < bits; ++i) result = 2 * result + random.integer(0, 1);
+  return result;
+}
+
+TEST(Numbers, NearestDoubleOfAQuotientIsNoFartherThanItsNeighbours) {
+  Random random(3);
+  for (int i = 0; i < 20000; ++i) {
+    const Integer n = any_integer(random, random.integer(0, 150)) * (random.one_in(2) ? -1 : 1);
+    const Integer d = random.one_in(3) ? Integer(1) << static_cast<unsigned>(random.integer(0, 150))
+                                       : any_integer(random, random.integer(0, 150));
+    const long exponent = random.one_in(2) ? random.integer(-60, 60) : random.integer(-1200, 800);
+    const double nearest = nearest_double(n, d, exponent);
+    Rational exact(n, d);
+    exact.canonicalize();
+    exact = times_power_of_two(exact, exponent);
+    const Rational error = abs(exact - to_rational(nearest));
+    for (const double end : {-HUGE_VAL, HUGE_VAL}) {
+      const double neighbour = std::nextafter(nearest, end);
+      const Rational other = abs(exact - to_rational(neighbour));
+      const bool is_even = decompose(nearest).exponent > decompose(neighbour).exponent;  // more zeros at the end
+      ASSERT_TRUE(error < other || (error == other && is_even)) << n << " / " << d << " 2^" << exponent;
+    }
+  }
+}
+
 TEST(Numbers, TiesGoToTheEvenMantissa) {
   EXPECT_EQ(nearest_double(1 + power_of_two(-53)), 1.0);
   EXPECT_EQ(nearest_double(1 + 3 * power_of_two(-53)), 1.0 + 0x1p-51);
