@@ -320,7 +320,9 @@ TEST_F(AllTheLight, NamesOfSourcesChangeOnlyTheColumns) {
   ASSERT_EQ(run({"radiosity", scene_, "--accuracy", "1e-2", "-o", file("s.csv")}), 0);
   const auto said = [&](std::vector<std::string> flags) {
     flags.insert(flags.begin(), {"truth", scene_, "--on", "floor", "--grid", "2x2", "--source", "ceiling", "--force"});
-    return validation::run_program(EXACTFF_PROGRAM, flags).error();
+    const validation::RunningProgram run(EXACTFF_PROGRAM, flags, folder_.path() / "stderr");
+    EXPECT_EQ(run.wait(), 0) << run.error();
+    return run.error();
   };
   EXPECT_NE(said({"-o", file("t.csv")}).find("counts with a radiosity of 1"), std::string::npos);
   EXPECT_EQ(said({"-o", file("u.csv"), "--radiosity", file("s.csv")}).find("radiosity of 1"), std::string::npos);
