@@ -23,6 +23,7 @@
 #include "kernel/filter.h"
 #include "kernel/poll.h"
 #include "scene/closed_surfaces.h"
+#include "scene/edges.h"
 #include "scene/face_points.h"
 #include "scene/junctions.h"
 #include "scene/places.h"
@@ -61,7 +62,10 @@ class Joiner {
 
  private:
   void add_edges(std::uint32_t piece, std::vector<EdgeOfPiece>& edges) const;
+  template <class Iterator>
+  void connect_along(Iterator first, Iterator last);
   void connect(std::vector<EdgeOfPiece>& edges);
+  std::vector<EdgeOfPiece> connect_sorted(const SceneEdges& edges);
   void connect_at_junctions(std::vector<EdgeOfPiece>& single);
   [[nodiscard]] PatchId patch_of(const EdgeOfPiece& edge) const { return scene_.face(pieces_[edge.piece].face).patch; }
   [[nodiscard]] bool lie_side_by_side(const EdgeOfPiece& a, const EdgeOfPiece& b) const;
@@ -97,11 +101,14 @@ void Joiner::add_edges(std::uint32_t piece, std::vector<EdgeOfPiece>& edges) con
 std::vector<std::vector<std::uint32_t>> Joiner::connected_sets() {
   parent_.resize(pieces_.size());
   std::iota(parent_.begin(), parent_.end(), 0U);
-  std::vector<EdgeOfPiece> edges;
-  edges.reserve(3 * pieces_.size());
-  for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece) add_edges(piece, edges);
-  connect(edges);
-  connect_at_junctions(edges);
+  std::vector<EdgeOfPiece> single;
+  if (scene_.transparent().empty()) {
+    single = connect_sorted(scene_edges(scene_));
+  } else {
+    for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece) add_edges(piece, single);
+    connect(single);
+  }
+  connect_at_junctions(single);
   std::vector<std::vector<std::uint32_t>> sets;
   if (!several_faces_) return sets;
   std::map<std::uint32_t, std::size_t> set_of_root;
@@ -118,17 +125,37 @@ std::vector<std::vector<std::uint32_t>> Joiner::connected_sets() {
   return sets;
 }
 
+// All uses of an edge.
+template <class Iterator>
+void Joiner::connect_along(Iterator first, Iterator last) {
+  if (last - first != 2 || !lie_side_by_side(*first, *(first + 1))) return;
+  const std::uint32_t a = root(first->piece), b = root((first + 1)->piece);
+  parent_[std::max(a, b)] = std::min(a, b);
+  several_faces_ = several_faces_ || pieces_[first->piece].face != pieces_[(first + 1)->piece].face;
+}
+
 // Leaves the edges that only one piece has.
 void Joiner::connect(std::vector<EdgeOfPiece>& edges) {
   auto single = edges.begin();
   for_each_edge(edges, [&](auto first, auto last) {
     if (last - first == 1) *single++ = *first;
-    if (last - first != 2 || !lie_side_by_side(*first, *(first + 1))) return;
-    const std::uint32_t a = root(first->piece), b = root((first + 1)->piece);
-    parent_[std::max(a, b)] = std::min(a, b);
-    several_faces_ = several_faces_ || pieces_[first->piece].face != pieces_[(first + 1)->piece].face;
+    connect_along(first, last);
   });
   edges.erase(single, edges.end());
+}
+
+// The same for all edges of the scene, which have been sorted for silhouettes, too. Transparent pieces have none there.
+std::vector<EdgeOfPiece> Joiner::connect_sorted(const SceneEdges& edges) {
+  std::vector<EdgeOfPiece> single, uses;
+  for (std::uint32_t id = 0; id < edges.size(); ++id) {
+    uses.clear();
+    for (const EdgeUse& use : edges.uses(id)) {
+      uses.push_back({edges.edge(id).a, edges.edge(id).b, use.piece(), use.upwards()});
+    }
+    if (uses.size() == 1) single.push_back(uses.front());
+    connect_along(uses.begin(), uses.end());
+  }
+  return single;
 }
 
 void Joiner::connect_at_junctions(std::vector<EdgeOfPiece>& single) {
