@@ -27,9 +27,9 @@ std::optional<Whole> whole_number(std::string_view text) {
 [[nodiscard]] std::string is_positive(const std::string& text);
 
 // In the order of `texts`. Each of them is a name, which may stand for the cells of a divided patch
-// (Scene::select_all), a comma list of names, or "all": every patch with area, in the order of the file. A patch, or the
-// cells of a divided one, with exactly the given name has priority, even if its name is "all" or contains a comma. Throws InputError for an unknown
-// name.
+// (Scene::select_all), a comma list of names, or "all": every patch with area, in the order of the file. A patch, or
+// the cells of a divided one, with exactly the given name has priority, even if its name is "all" or contains a comma.
+// Throws InputError for an unknown name.
 std::vector<Selection> selections_named(const Scene& scene, const std::vector<std::string>& texts);
 
 // Takes "sky" out of the texts, if it is among them and is not the name of a patch.

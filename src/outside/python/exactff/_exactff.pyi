@@ -139,7 +139,7 @@ def form_factors(
 def form_factor(scene: Scene, point: Sequence[float], normal: Sequence[float], on: Sequence[int], source: str,
                 fraction: bool, list_cutters: bool, gradient: bool, vertices: bool, digits: int, precision_cap: int,
                 only_occluders: Optional[Sequence[int]]) -> Pair: ...
-_Factor = tuple[float, float, float, str, str, bool, float, float, int, int]
+_Factor = tuple[float, float, float, str, str, bool, float, float, int, int, str]
 _Apart = tuple[int, int, float, float]
 _Share = tuple[float, float, float, int]
 
