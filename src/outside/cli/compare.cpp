@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/further_files.h"
+#include "cli/kept_work.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "exactff/slips.h"
@@ -59,9 +60,7 @@ struct CompareArguments {
   bool force = false;
   FurtherFiles further;
 
-  [[nodiscard]] jobs::Existing existing() const {
-    return resume ? jobs::Existing::kResume : force ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
-  }
+  [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
 };
 
 std::string command_line(const CompareArguments& args) {

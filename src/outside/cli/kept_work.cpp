@@ -37,6 +37,19 @@ jobs::RowHooks Narrator::hooks(double slow_seconds) {
           .slow_seconds = slow_seconds};
 }
 
+bool Narrator::is_done(const std::string& file, const std::function<void()>& work) const {
+  try {
+    work();
+    return true;
+  } catch (const Cancelled&) {
+    tell_what_is_kept("interrupted", file);
+    return false;
+  } catch (...) {
+    tell_what_is_kept("stopped by the error below", file);
+    throw;
+  }
+}
+
 void Narrator::tell_what_is_kept(const std::string& reason, const std::string& file) const {
   bar_.clear();
   if (progress_.total == 0 && !is_interrupted()) return;  // it had not begun

@@ -14,6 +14,11 @@ namespace exactff::cli {
 // "2/4"; one shard if the text is empty. Throws InputError.
 [[nodiscard]] jobs::Shard shard_of(const std::string& text);
 
+// Of --resume and --force.
+[[nodiscard]] inline jobs::Existing existing_of(bool resume, bool force) {
+  return resume ? jobs::Existing::kResume : force ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
+}
+
 constexpr double kNeverSlow = std::numeric_limits<double>::infinity();  // seconds: where long rows are usual
 
 // Prints progress and messages while rows are computed.
@@ -24,10 +29,12 @@ class Narrator {
 
   [[nodiscard]] jobs::RowHooks hooks(double slow_seconds);
   void clear() const { bar_.clear(); }
-  // Called when the work has been given up.
-  void tell_what_is_kept(const std::string& reason, const std::string& file) const;
+  // Calls work(). False if it was interrupted. If it is given up, for that or by an exception, which is passed on,
+  // tells what is kept of `file`.
+  [[nodiscard]] bool is_done(const std::string& file, const std::function<void()>& work) const;
 
  private:
+  void tell_what_is_kept(const std::string& reason, const std::string& file) const;
   void show(const Progress& progress);
   void tell(const std::string& text);
   void tell_slow(const std::string& row, double seconds);

@@ -79,9 +79,7 @@ struct MatrixArguments {
   bool resume = false;
   bool force = false;
 
-  [[nodiscard]] jobs::Existing existing() const {
-    return resume ? jobs::Existing::kResume : force ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
-  }
+  [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
   // A pipe or a device has no journal, and a draft needs none.
   [[nodiscard]] bool keeps_work() const {
     std::error_code ignored;
@@ -364,18 +362,13 @@ int write(const MatrixArguments& args, jobs::Team* team) {
   Narrator narrator("pair");
   jobs::Summary summary;
   std::unique_ptr<MatrixJob> job;
-  try {
+  const bool done = narrator.is_done(args.csv, [&] {
     job = job_of(args, team);
     const InterruptWatch watch(words_of_interruption("pair", args.csv));
     LateNote note = note_on_speed(args, job->request, team);
     summary = matrix::write(job->request, args.csv, args.existing(), with_note(note, narrator.hooks(kNeverSlow)), team);
-  } catch (const Cancelled&) {
-    narrator.tell_what_is_kept("interrupted", args.csv);
-    return exit_code_of_interruption();
-  } catch (...) {
-    narrator.tell_what_is_kept("stopped by the error below", args.csv);
-    throw;
-  }
+  });
+  if (!done) return exit_code_of_interruption();
   narrator.clear();
   if (args.shard.empty()) return finish(args, *job, matrix::read(job->request, args.csv));
   print_summary(args, summary);

@@ -80,9 +80,7 @@ struct RadiosityArguments {
   std::string matrix;  // a file
   bool resume = false, force = false;
 
-  [[nodiscard]] jobs::Existing existing() const {
-    return resume ? jobs::Existing::kResume : force ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
-  }
+  [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
   // While they are computed, view factors are kept beside the file of -o. A pipe or a device has no journal.
   [[nodiscard]] bool keeps_work() const {
     std::error_code ignored;
@@ -365,21 +363,16 @@ void require_matrix_of(const Scene& scene, const matrix::Table& table) {
 std::optional<matrix::Matrix> kept_view_factors(const RadiosityArguments& args, const matrix::Request& request) {
   const std::string file = args.kept_factors();
   Narrator narrator("pair");
-  try {
+  const bool done = narrator.is_done(file, [&] {
     const InterruptWatch watch(words_of_interruption("pair", file));
     (void)matrix::write(request, file, args.existing(), narrator.hooks(kNeverSlow), nullptr);
-  } catch (const Cancelled&) {
-    narrator.tell_what_is_kept("interrupted", file);
-    return std::nullopt;
-  } catch (...) {
-    narrator.tell_what_is_kept("stopped by the error below", file);
-    throw;
-  }
+  });
+  if (!done) return std::nullopt;
   narrator.clear();
   return matrix::read(request, file);
 }
 
-// Computed, or of the file; `options` are then those of the file. Nothing if finished ones are kept.
+// Computed, or of the file; `options` are then those of the file. Nothing if kept_view_factors were interrupted.
 std::optional<matrix::Matrix> view_factors_of(const RadiosityArguments& args, const Scene& scene,
                                               const std::vector<Selection>& patches, const Hooks& hooks,
                                               ViewFactorOptions& options) {

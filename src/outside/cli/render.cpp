@@ -10,6 +10,7 @@
 
 #include "cli/command.h"
 #include "cli/exit_code.h"
+#include "cli/kept_work.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/render_output.h"
@@ -78,9 +79,7 @@ struct RenderArguments {
   bool force = false;
   std::string image;
 
-  [[nodiscard]] jobs::Existing existing() const {
-    return resume ? jobs::Existing::kResume : force ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
-  }
+  [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
 };
 
 render::Size size_of(const std::string& text) {

@@ -84,9 +84,7 @@ struct TruthArguments {
     if (!further.exr.empty()) return Quantity::kRadiance;
     return solution.is_given() ? std::optional(Quantity::kIrradiance) : std::nullopt;
   }
-  [[nodiscard]] jobs::Existing existing() const {
-    return resume ? jobs::Existing::kResume : force ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
-  }
+  [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
 };
 
 // A request and the scene that it refers to.
@@ -230,19 +228,14 @@ int write(const TruthArguments& args, jobs::Team* team) {
   Narrator narrator("row");
   truth::Summary summary;
   std::unique_ptr<Job> job;
-  try {
+  const bool done = narrator.is_done(args.file, [&] {
     job = with_progress([&] { return job_of(args, team); });
     tell_of_sources(*job);
     const InterruptWatch watch(words_of_interruption("row", args.file));
     truth::Request request = args.further.vtk.empty() ? std::move(job->request) : job->request;
     summary = truth::write(std::move(request), args.file, args.existing(), narrator.hooks(args.slow_seconds), team);
-  } catch (const Cancelled&) {
-    narrator.tell_what_is_kept("interrupted", args.file);
-    return exit_code_of_interruption();
-  } catch (...) {
-    narrator.tell_what_is_kept("stopped by the error below", args.file);
-    throw;
-  }
+  });
+  if (!done) return exit_code_of_interruption();
   const int interrupted = write_further_files(args, *job, narrator.hooks(args.slow_seconds));
   narrator.clear();
   return interrupted != 0 ? interrupted : print_summary(summary, args.file, args.further);
