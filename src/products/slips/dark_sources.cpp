@@ -194,8 +194,8 @@ std::vector<Problem> warnings_of_dark_sources(const Scene& scene, std::span<cons
   const auto has_receivers = [&](const Selection& object) {
     return std::ranges::any_of(own, [&](const Selection& one) { return one.patch == object.patch; });
   };
-  for (const auto& finding : {inward_surfaces(scene, trials), outward_rooms(scene, trials)}) {
-    if (finding && std::ranges::any_of(finding->objects, has_receivers)) warnings.push_back(finding->words);
+  for (const Finding& finding : turned_surfaces(scene, trials)) {
+    if (std::ranges::any_of(finding.objects, has_receivers)) warnings.push_back(finding.words);
   }
   return warnings;
 }

@@ -152,9 +152,9 @@ std::vector<Finding> diagnose(const Scene& scene) {
   FlipTrials trials(scene);
   add(contradicting_normals(scene, trials));
   std::vector<Selection> turned;
-  for (const auto& finding : {inward_surfaces(scene, trials), outward_rooms(scene, trials)}) {
-    if (finding) turned.insert(turned.end(), finding->objects.begin(), finding->objects.end());
-    add(finding);
+  for (Finding& finding : turned_surfaces(scene, trials)) {
+    turned.insert(turned.end(), finding.objects.begin(), finding.objects.end());
+    findings.push_back(std::move(finding));
   }
   std::ranges::move(unseen_fronts(scene, turned, trials), std::back_inserter(findings));
   std::ranges::move(twin_faces(scene), std::back_inserter(findings));

@@ -15,9 +15,9 @@ namespace exactff::slips {
 [[nodiscard]] std::string words_to_flip(const Scene& scene, std::span<const Selection> selections);
 
 [[nodiscard]] std::optional<Finding> contradicting_normals(const Scene& scene, FlipTrials& trials);
-[[nodiscard]] std::optional<Finding> inward_surfaces(const Scene& scene, FlipTrials& trials);
-[[nodiscard]] std::optional<Finding> outward_rooms(const Scene& scene, FlipTrials& trials);
-// kUnseenFront, kEmitterLooksAway. `turned`: the surfaces that the two above have found.
+// kInwardSurface, kOutwardRoom.
+[[nodiscard]] std::vector<Finding> turned_surfaces(const Scene& scene, FlipTrials& trials);
+// kUnseenFront, kEmitterLooksAway. `turned`: what turned_surfaces() is about.
 [[nodiscard]] std::vector<Finding> unseen_fronts(const Scene& scene, std::span<const Selection> turned,
                                                  FlipTrials& trials);
 [[nodiscard]] std::vector<Finding> twin_faces(const Scene& scene);  // kDoubledFaces, kOppositeFaces

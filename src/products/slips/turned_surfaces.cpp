@@ -24,7 +24,7 @@ using kernel::dot;
 
 constexpr std::size_t kMostRooms = 8;                 // to be tried: flips share a limited number of rays
 constexpr std::size_t kMostPoints = 32;               // to be looked for inside a surface
-constexpr std::uint64_t kMostTriangles = 20'000'000;  // in all solid angles together: about a second
+constexpr std::uint64_t kMostTriangles = 20'000'000;  // in all solid angles of boxes, and of rooms: about a second
 
 double length(const Vec3& v) { return std::hypot(v.x, v.y, v.z); }
 
@@ -67,6 +67,7 @@ class TurnedSurfaces {
 
   // The first few that look outward and enclose something.
   std::vector<std::uint32_t> rooms() {
+    triangles_ = 0;  // whatever the boxes took
     std::vector<std::uint32_t> found;
     for (std::uint32_t s = 0; s < pieces_.size() && found.size() < kMostRooms; ++s) {
       if (!found_.surfaces()[s].turned_inside_out && encloses_anything(s)) found.push_back(s);
@@ -200,29 +201,34 @@ Finding finding_of(const Scene& scene, Kind kind, const TurnedSurfaces& surfaces
   return finding;
 }
 
-}  // namespace
-
-std::optional<Finding> inward_surfaces(const Scene& scene, FlipTrials& trials) {
-  TurnedSurfaces surfaces(scene);
-  const std::vector<std::uint32_t> boxes = boxes_to_turn(surfaces, trials);
-  if (boxes.empty()) return std::nullopt;
-  return finding_of(
-      scene, Kind::kInwardSurface, surfaces, boxes,
-      boxes.size() == 1 ? "looks inward and encloses no other face" : "look inward and enclose no other face",
-      "its outer side is its back, which emits nothing and receives nothing");
-}
-
-std::optional<Finding> outward_rooms(const Scene& scene, FlipTrials& trials) {
-  TurnedSurfaces surfaces(scene);
+std::vector<std::uint32_t> rooms_to_turn(TurnedSurfaces& surfaces, FlipTrials& trials) {
   std::vector<std::uint32_t> rooms = surfaces.rooms();
   std::erase_if(rooms, [&](std::uint32_t room) {
     return !surfaces.is_better_turned(room, trials.try_flip(surfaces.selections(std::span(&room, 1))));
   });
-  if (rooms.empty()) return std::nullopt;
-  return finding_of(scene, Kind::kOutwardRoom, surfaces, rooms,
-                    rooms.size() == 1 ? "looks outward, and all that sees it stands in it"
-                                      : "look outward, and all that sees them stands in them",
-                    "its inner side is its back, which emits nothing and receives nothing");
+  return rooms;
+}
+
+}  // namespace
+
+std::vector<Finding> turned_surfaces(const Scene& scene, FlipTrials& trials) {
+  TurnedSurfaces surfaces(scene);
+  std::vector<Finding> findings;
+  const std::vector<std::uint32_t> boxes = boxes_to_turn(surfaces, trials);
+  if (!boxes.empty()) {
+    findings.push_back(finding_of(
+        scene, Kind::kInwardSurface, surfaces, boxes,
+        boxes.size() == 1 ? "looks inward and encloses no other face" : "look inward and enclose no other face",
+        "its outer side is its back, which emits nothing and receives nothing"));
+  }
+  const std::vector<std::uint32_t> rooms = rooms_to_turn(surfaces, trials);
+  if (!rooms.empty()) {
+    findings.push_back(finding_of(scene, Kind::kOutwardRoom, surfaces, rooms,
+                                  rooms.size() == 1 ? "looks outward, and all that sees it stands in it"
+                                                    : "look outward, and all that sees them stands in them",
+                                  "its inner side is its back, which emits nothing and receives nothing"));
+  }
+  return findings;
 }
 
 }  // namespace exactff::slips

@@ -150,7 +150,7 @@ std::vector<bool> closed_patches(const Scene& scene) {
   return closed;
 }
 
-Unseen find_unseen(const Scene& scene, std::span<const Selection> turned_surfaces) {
+Unseen find_unseen(const Scene& scene, std::span<const Selection> turned_objects) {
   Unseen unseen;
   FrontFinder finder(scene);
   if (!finder.usable()) return unseen;
@@ -159,7 +159,7 @@ Unseen find_unseen(const Scene& scene, std::span<const Selection> turned_surface
   for (const Selection& emitter : scene.emitters()) emits[index_of(emitter.patch)] = true;
   const std::vector<bool> closed = closed_patches(scene);
   std::vector<bool> turned(count, false);  // their backs are where their fronts should be
-  for (const Selection& one : turned_surfaces) turned[index_of(one.patch)] = true;
+  for (const Selection& one : turned_objects) turned[index_of(one.patch)] = true;
   std::vector<std::size_t> order;  // emitters first
   for (const bool emitting : {true, false}) {
     for (std::size_t p = 0; p < count; ++p) {
@@ -201,10 +201,10 @@ std::string suggestion(const Scene& scene, std::span<const Selection> objects, s
 
 }  // namespace
 
-std::vector<Finding> unseen_fronts(const Scene& scene, std::span<const Selection> turned_surfaces, FlipTrials& trials) {
+std::vector<Finding> unseen_fronts(const Scene& scene, std::span<const Selection> turned_objects, FlipTrials& trials) {
   std::vector<Finding> findings;
   if (scene.patches().size() < 2) return findings;
-  const Unseen unseen = find_unseen(scene, turned_surfaces);
+  const Unseen unseen = find_unseen(scene, turned_objects);
   const std::string limit = unseen.looked_at == unseen.to_look_at
                                 ? std::string()
                                 : ", among the first " + std::to_string(unseen.looked_at) + " of " +

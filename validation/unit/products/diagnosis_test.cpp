@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <sstream>
 #include <string>
 
@@ -11,6 +10,7 @@
 #include "exactff/scene_files.h"
 #include "exactff/slips.h"
 #include "generate/plain_scene.h"
+#include "models/room_parts.h"
 
 namespace exactff::slips {
 namespace {
@@ -129,16 +129,9 @@ TEST(Diagnosis, LetsRoomsAndHollowsLookInward) {
 
 // A box as a patch of its own.
 void add_box(generate::PlainScene& plain, const std::string& name, const Vec3& low, const Vec3& high, bool outward) {
-  const auto at = [&](int i) {
-    return Vec3{(i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y, (i & 4) != 0 ? high.z : low.z};
-  };
-  for (const std::array<int, 4>& ring :
-       {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
-    std::vector<Vec3> corners;
-    for (const int i : ring) corners.push_back(at(i));
-    if (!outward) std::ranges::reverse(corners);
-    plain.add_ring(plain.patch(name), corners);
-  }
+  models::add_box(plain, name, {low, high});
+  if (outward) return;
+  for (models::PlainFace& face : plain.patch(name).faces) std::ranges::reverse(face.rings.front());
 }
 
 // Turned alone, the front of the table's bottom would lie on that of the leg's top. The leg's bottom, which looks up,
