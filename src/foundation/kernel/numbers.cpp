@@ -12,54 +12,42 @@ namespace {
 constexpr long kMantissaBits = std::numeric_limits<double>::digits;
 constexpr long kLowestExponent = std::numeric_limits<double>::min_exponent - kMantissaBits;  // of a denormal's last bit
 
-// |a| * 2^-shift, to nearest, ties to even.
-Integer rounded_shift(const Integer& a, long shift) {
-  const auto bits = static_cast<mp_bitcnt_t>(shift);
-  Integer quotient = abs(a);
-  const bool half = mpz_tstbit(quotient.get_mpz_t(), bits - 1) != 0;
-  const bool more = mpz_scan1(quotient.get_mpz_t(), 0) < bits - 1;
-  quotient >>= bits;
-  if (half && (more || mpz_odd_p(quotient.get_mpz_t()))) ++quotient;
-  return quotient;
+constexpr long kWholeBits = 64;
+static_assert(sizeof(unsigned long) == sizeof(std::uint64_t));  // mpz_get_ui returns all bits
+
+// (whole + f) * 2^exponent, where 0 <= f < 1, and f > 0 if `more`: then `whole` has more than 54 bits.
+double rounded(std::uint64_t whole, bool more, long exponent) {
+  const long excess = std::max<long>(std::bit_width(whole) - kMantissaBits, kLowestExponent - exponent);
+  if (excess <= 0) return std::ldexp(static_cast<double>(whole), static_cast<int>(exponent));  // exact
+  std::uint64_t kept = excess < kWholeBits ? whole >> excess : 0;
+  if (excess <= kWholeBits) {
+    const std::uint64_t half = std::uint64_t{1} << (excess - 1), cut = whole & (half | (half - 1));
+    if (cut > half || (cut == half && (more || kept % 2 != 0))) ++kept;  // ties to even
+  }
+  return std::ldexp(static_cast<double>(kept), static_cast<int>(exponent + excess));
 }
 
 }  // namespace
 
 double nearest_double(const Integer& a, long exponent) {
-  const long excess = std::max(bit_length(a) - kMantissaBits, kLowestExponent - exponent);
-  if (excess <= 0) return std::ldexp(a.get_d(), static_cast<int>(exponent));  // exact
-  const double magnitude = std::ldexp(rounded_shift(a, excess).get_d(), static_cast<int>(exponent + excess));
+  const long cut = std::max(bit_length(a) - kWholeBits, 0L);
+  Integer high;
+  if (cut > 0) mpz_tdiv_q_2exp(high.get_mpz_t(), a.get_mpz_t(), static_cast<mp_bitcnt_t>(cut));
+  const bool more = cut > 0 && mpz_scan1(a.get_mpz_t(), 0) < static_cast<mp_bitcnt_t>(cut);
+  const double magnitude = rounded(mpz_get_ui((cut > 0 ? high : a).get_mpz_t()), more, exponent + cut);
   return sign(a) < 0 ? -magnitude : magnitude;
 }
 
-// The quotient is cut to a whole number of 63 or 64 bits, at least ten more than a double has. So whether anything was
-// cut off matters only if the rest of the bits are those of one half.
+// The quotient is cut to a whole number of 63 or 64 bits.
 double nearest_double(const Integer& numerator, const Integer& denominator, long exponent) {
-  static_assert(sizeof(unsigned long) == sizeof(std::uint64_t));
-  constexpr long kWholeBits = 64;
   EXACTFF_EXPECT(sign(denominator) > 0);
   if (sign(numerator) == 0) return 0.0;
   const long scale = kWholeBits - 1 - (bit_length(numerator) - bit_length(denominator));
   Integer scaled, quotient, rest;
-  const auto divide = [&](const Integer& n, const Integer& d) {
-    mpz_tdiv_qr(quotient.get_mpz_t(), rest.get_mpz_t(), n.get_mpz_t(), d.get_mpz_t());
-  };
-  if (scale >= 0) {
-    mpz_mul_2exp(scaled.get_mpz_t(), numerator.get_mpz_t(), static_cast<mp_bitcnt_t>(scale));
-    divide(scaled, denominator);
-  } else {
-    mpz_mul_2exp(scaled.get_mpz_t(), denominator.get_mpz_t(), static_cast<mp_bitcnt_t>(-scale));
-    divide(numerator, scaled);
-  }
-  const std::uint64_t whole = mpz_get_ui(quotient.get_mpz_t());  // of its magnitude
-  const long last = exponent - scale;                            // the power of two of its last bit
-  const long excess = std::max<long>(std::bit_width(whole) - kMantissaBits, kLowestExponent - last);
-  std::uint64_t kept = excess < kWholeBits ? whole >> excess : 0;
-  if (excess <= kWholeBits) {
-    const std::uint64_t half = std::uint64_t{1} << (excess - 1), cut = whole & (half | (half - 1));
-    if (cut > half || (cut == half && (sign(rest) != 0 || kept % 2 != 0))) ++kept;
-  }
-  const double magnitude = std::ldexp(static_cast<double>(kept), static_cast<int>(last + excess));  // or it overflows
+  scaled = (scale > 0 ? numerator : denominator) << static_cast<mp_bitcnt_t>(std::abs(scale));
+  mpz_tdiv_qr(quotient.get_mpz_t(), rest.get_mpz_t(), (scale > 0 ? scaled : numerator).get_mpz_t(),
+              (scale > 0 ? denominator : scaled).get_mpz_t());
+  const double magnitude = rounded(mpz_get_ui(quotient.get_mpz_t()), sign(rest) != 0, exponent - scale);
   return sign(numerator) < 0 ? -magnitude : magnitude;
 }
 

@@ -42,7 +42,7 @@ inline Rational to_rational(double value) {
 double nearest_double(const Rational& value);
 // The same for numerator / denominator * 2^exponent. Requires a positive denominator.
 double nearest_double(const Integer& numerator, const Integer& denominator, long exponent);
-// The same for a * 2^exponent, which must not overflow.
+// The same for a * 2^exponent.
 double nearest_double(const Integer& a, long exponent);
 
 // "p/q" in lowest terms, or "p".

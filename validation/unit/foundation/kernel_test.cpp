@@ -64,6 +64,7 @@ TEST(Numbers, NearestDoubleOfAQuotientIsNoFartherThanItsNeighbours) {
                                        : any_integer(random, random.integer(0, 150));
     const long exponent = random.one_in(2) ? random.integer(-60, 60) : random.integer(-1200, 800);
     const double nearest = nearest_double(n, d, exponent);
+    ASSERT_EQ(nearest_double(n, exponent), nearest_double(n, Integer(1), exponent)) << n << " 2^" << exponent;
     Rational exact(n, d);
     exact.canonicalize();
     exact = times_power_of_two(exact, exponent);
