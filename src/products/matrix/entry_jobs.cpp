@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <utility>
 
 #include "kernel/float_environment.h"
 #include "kernel/outward.h"
@@ -71,8 +70,8 @@ ViewFactor factor_of(const view_factors::Pairs& pairs, std::size_t entry) {
 // What this thread is computing.
 class AtWork {
  public:
-  AtWork(const EntryJobs& jobs, std::size_t job) : jobs_(jobs), job_(job), before_(std::exchange(of_thread, this)) {}
-  ~AtWork() { of_thread = before_; }
+  AtWork(const EntryJobs& jobs, std::size_t job) : jobs_(jobs), job_(job) { of_thread = this; }
+  ~AtWork() { of_thread = nullptr; }
   AtWork(const AtWork&) = delete;
   AtWork& operator=(const AtWork&) = delete;
 
@@ -86,7 +85,6 @@ class AtWork {
  private:
   const EntryJobs& jobs_;
   const std::size_t job_;
-  const AtWork* before_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 thread_local const AtWork* AtWork::of_thread = nullptr;
