@@ -118,8 +118,10 @@ std::vector<double> drawn_marks(const Axes& axes) {
   return places;
 }
 
-// Otherwise a logarithmic axis would extend to the next power of ten.
-constexpr double kXMargin = 1.5;
+// By what factor a logarithmic axis is longer than its values at each end. Without one, gnuplot lets it end at powers
+// of ten.
+constexpr double kXMargin = 1.5, kNoMargin = 1.0;
+
 std::string x_range(const Axes& axes, const std::vector<Points>& drawn) {
   if (!axes.log_x) return {};
   std::vector<double> all = drawn_marks(axes);
@@ -146,11 +148,10 @@ std::string decimal_tics(const char* axis, double low, double high) {
 }
 
 // A logarithmic axis of a single value, or one without a power of ten on it, would have no number beside it: it is
-// widened to powers of ten. `margin`: by what factor the axis is longer than the values at each end, unless gnuplot
-// lets it end at powers of ten (0).
+// widened to powers of ten.
 std::string readable_range(const char* axis, const std::vector<double>& values, double margin) {
   const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
-  const double low = *smallest / std::max(margin, 1.0), high = *largest * std::max(margin, 1.0);
+  const double low = *smallest / margin, high = *largest * margin;
   const double below = std::floor(std::log10(low)), above = std::ceil(std::log10(high));
   std::string text;
   const bool widens = std::ceil(std::log10(low)) > std::floor(std::log10(high));
@@ -158,7 +159,7 @@ std::string readable_range(const char* axis, const std::vector<double>& values, 
     text = std::string("set ") + axis + "range [1e" + std::to_string(static_cast<int>(below)) + ":1e" +
            std::to_string(static_cast<int>(above)) + "]\n";
   }
-  const bool ends_at_powers = widens || margin == 0.0;
+  const bool ends_at_powers = widens || margin == kNoMargin;
   return text + (ends_at_powers ? decimal_tics(axis, std::pow(10.0, below), std::pow(10.0, above))
                                 : decimal_tics(axis, low, high));
 }
@@ -171,7 +172,7 @@ std::string readable_ranges(const Axes& axes, const std::vector<Points>& drawn) 
       ys.push_back(y);
     }
   }
-  return (axes.log_x ? readable_range("x", xs, kXMargin) : "") + (axes.log_y ? readable_range("y", ys, 0.0) : "");
+  return (axes.log_x ? readable_range("x", xs, kXMargin) : "") + (axes.log_y ? readable_range("y", ys, kNoMargin) : "");
 }
 
 std::string style_of(const Series& series) {
