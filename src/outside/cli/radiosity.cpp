@@ -365,7 +365,7 @@ std::optional<matrix::Matrix> kept_view_factors(const RadiosityArguments& args, 
   Narrator narrator("pair");
   const bool done = narrator.is_done(file, [&] {
     const InterruptWatch watch(words_of_interruption("pair", file));
-    (void)matrix::write(request, file, args.existing(), narrator.hooks(kNeverSlow), nullptr);
+    (void)matrix::write(request, file, args.existing(), narrator.hooks(kNeverSlow));
   });
   if (!done) return std::nullopt;
   narrator.clear();
