@@ -149,22 +149,6 @@ Point point_in(const Part& part, const Tile& tile, Draws& draws, const Units& un
   return places.point(part, places.across(), places.up(), units);
 }
 
-std::vector<Point> points_in(const Part& part, const Tile& tile, Draws& draws, const Units& units) {
-  const PlacesIn places(tile, draws);
-  const std::uint64_t a = places.across(), b = places.up();
-  const auto point = [&](std::uint64_t across, std::uint64_t up) { return places.point(part, across, up, units); };
-  if (tile.shape == Tile::Shape::kParallelogram) return {point(a, b), point(kWholeTile - a, kWholeTile - b)};
-  const std::uint64_t c = kWholeTile - a - b;
-  return {point(a, b), point(b, c), point(c, a)};
-}
-
-Sample sample(const std::vector<Part>& parts, const Strata& strata, std::size_t look, std::size_t stratum,
-              std::size_t draw, const Units& units) {
-  Draws draws(look, stratum, draw);
-  const Tile& tile = draw_tile(strata, strata.strata[stratum], draw, draws);
-  return {tile.part, points_in(parts[tile.part], tile, draws, units)};
-}
-
 std::vector<Vec3> corners_of(const Part& part, const Tile& tile, const Units& units) {
   const Integer whole = Integer(tile.columns) * Integer(tile.rows);
   const auto at = [&](std::uint32_t across, std::uint32_t up) {
@@ -180,12 +164,6 @@ void Ranges::add(double range, double share) {
   const double weighted = range * share;
   largest = std::max(largest, weighted);
   squares += weighted * weighted;
-}
-
-Ranges ranges_of(const Strata& strata, double range) {
-  Ranges ranges;
-  for (const Stratum& stratum : strata.strata) ranges.add(range, stratum.area / strata.area);
-  return ranges;
 }
 
 void StratifiedMean::add(double a, double b, double share) {

@@ -56,25 +56,14 @@ struct Strata {
 // the square of half the difference of the halves' means.
 [[nodiscard]] const Tile& draw_tile(const Strata& strata, const Stratum& stratum, std::size_t draw, Draws& draws);
 
-// Points each of which is uniform in the tile, and whose mean is the tile's centre, so that the mean of a linear
-// function at them is exact: of a parallelogram two, opposite each other; of a triangle three, with the same weights in
-// turn at its corners.
-[[nodiscard]] std::vector<Point> points_in(const Part& part, const Tile& tile, Draws& draws, const Units& units);
-inline constexpr std::size_t kFewestPoints = 2;  // of a draw
-// The first of them alone.
+// Uniform in the tile.
 [[nodiscard]] Point point_in(const Part& part, const Tile& tile, Draws& draws, const Units& units);
 
 // Its corners, in the order of the part's, rounded once.
 [[nodiscard]] std::vector<Vec3> corners_of(const Part& part, const Tile& tile, const Units& units);
 
-// The points of one of the two draws of a stratum, in one part.
-struct Sample {
-  std::size_t part;
-  std::vector<Point> points;
-};
+// Of a stratum.
 inline constexpr std::size_t kDraws = 2;
-[[nodiscard]] Sample sample(const std::vector<Part>& parts, const Strata& strata, std::size_t look, std::size_t stratum,
-                            std::size_t draw, const Units& units);
 
 // Proved bounds of a function on strata: it lies in [0, R_s] on stratum s, with the share w_s of the area.
 struct Ranges {
@@ -82,11 +71,7 @@ struct Ranges {
   double squares = 0.0;  // the sum of (w_s R_s)^2
 
   void add(double range, double share);
-  // For a range that is so many times as large everywhere.
-  [[nodiscard]] Ranges scaled(double factor) const { return {factor * largest, factor * factor * squares}; }
 };
-// Of a function with the same range everywhere.
-[[nodiscard]] Ranges ranges_of(const Strata& strata, double range);
 
 // The mean over the strata of a function, from two independent numbers a_s and b_s in each.
 //
@@ -120,7 +105,6 @@ struct StratifiedMean {
   // `unknown` is the mean of u. Both bounds have half of the risk. The differences of f + u are at most the sums of
   // those of f and of u, so their squares add up to at most the square of the sum of the two roots (Minkowski).
   [[nodiscard]] double error(double risk, const Ranges& ranges, const StratifiedMean& unknown) const;
-  [[nodiscard]] StratifiedMean scaled(double factor) const { return {factor * value, factor * factor * square}; }
 };
 
 }  // namespace exactff::view_factors
