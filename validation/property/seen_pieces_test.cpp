@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "exactff/view.h"
 #include "generate/random.h"
 #include "property/closed_rooms.h"
 #include "support/random_scenes.h"
