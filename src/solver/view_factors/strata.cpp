@@ -160,31 +160,4 @@ std::vector<Vec3> corners_of(const Part& part, const Tile& tile, const Units& un
   return {at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
 }
 
-void Ranges::add(double range, double share) {
-  const double weighted = range * share;
-  largest = std::max(largest, weighted);
-  squares += weighted * weighted;
-}
-
-void StratifiedMean::add(double a, double b, double share) {
-  const double half = 0.5 * (a - b) * share;
-  value += 0.5 * (a + b) * share;
-  square += half * half;
-}
-
-double StratifiedMean::error(double risk, const Ranges& ranges) const {
-  const double of_two = std::log(8.0 / risk), of_one = std::log(4.0 / risk), r = 0.5 * ranges.largest;
-  const double unmet = 2.0 * r * r * of_one;
-  const double deviation = 0.5 * (std::sqrt(unmet) + std::sqrt(unmet + 4.0 * square)), third = r * of_two / 3.0;
-  const double bernstein = third + std::sqrt(third * third + 2.0 * deviation * deviation * of_two);
-  const double hoeffding = 0.5 * std::sqrt(of_two * ranges.squares);
-  const double none_met = value == 0.0 ? 0.5 * of_one * ranges.largest : HUGE_VAL;
-  return std::min({1.0, bernstein, hoeffding, none_met});
-}
-
-double StratifiedMean::error(double risk, const Ranges& ranges, const StratifiedMean& unknown) const {
-  const double root = std::sqrt(square) + std::sqrt(unknown.square);
-  return unknown.value + StratifiedMean{value + unknown.value, root * root}.error(0.5 * risk, ranges);
-}
-
 }  // namespace exactff::view_factors
