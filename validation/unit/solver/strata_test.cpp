@@ -44,13 +44,6 @@ std::vector<Patch> patches() {
   };
 }
 
-// Of a function with the same range everywhere.
-Ranges ranges_of(const Strata& strata, double range) {
-  Ranges ranges;
-  for (const Stratum& stratum : strata.strata) ranges.add(range, stratum.area / strata.area);
-  return ranges;
-}
-
 struct Sample {
   std::size_t part;
   Point point;
