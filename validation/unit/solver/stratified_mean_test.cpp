@@ -40,7 +40,7 @@ Spots spots(std::size_t count, double share, double high = 1.0) {
 
 // The probability with which an interval of risk 0.2 misses the mean.
 double missed(const Spots& of, double guess, double expected) {
-  constexpr int kLooks = 2000;
+  constexpr int kLooks = 1000;
   constexpr double kRisk = 0.2;
   std::mt19937_64 random(7);
   int missed = 0;
