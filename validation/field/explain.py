@@ -103,6 +103,14 @@ def explain_plates(program, folder):
         for across in (16, 17):
             worst = exact.judge(openfoam.solve(scene, across, 1)[1])["worst"]
             print(f"OpenFOAM, the plate between the plates {name}, {across} across: worst {worst:.2e}")
+    lower = [line.replace(" 0.5", " 0.499") for line in plates if line.startswith("v ") and line.endswith(" 0.5")]
+    apart = "\n".join(plates).replace("f 12 11 10 9", "\n".join([*lower, "f -1 -2 -3 -4"])).splitlines()
+    for name, lines in ("in one plane", plates), ("0.001 apart", apart):
+        scene = scene_of(program, lines, folder)
+        exact = factors.Exact(scene)
+        for across in (9, 17):
+            worst = exact.judge(calculix.solve(scene, across, "300.")[1])["worst"]
+            print(f"CalculiX, the sides of the plate {name}, {across} across: worst {worst:.2e}")
     scene = scene_of(program, without(plates, "plate_bottom"), folder)
     for name, found in ("CalculiX", calculix.solve(scene, 9, "300.")), ("OpenFOAM", openfoam.solve(scene, 9, 1)):
         print(f"{name}, a plate with a front only: up {found[1][0, 1]:.5f}, down {found[1][1, 0]:.5f}")

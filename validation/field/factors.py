@@ -9,13 +9,32 @@ import resource
 import subprocess
 import sys
 import time
+import typing
 
 import numpy
 
+
+
+class Source(typing.NamedTuple):
+    """A scene to measure. ours: how `exactff matrix` computes it; sheets: patches whose backs are seen; coarsest: the
+    fewest cells along its longest edge."""
+
+    label: str
+    path: str
+    closed: bool
+    ours: tuple = ("--certify",)
+    sheets: tuple = ()
+    coarsest: int = 3
+
+
 SCENES = [
-    ("room with cube", "data/field/room_with_cube.obj", True),
-    ("L-shaped room", "data/scenes/formats/test4.vs3", True),
-    ("plate between plates", "data/field/plates.obj", False),
+    Source("room with cube", "data/field/room_with_cube.obj", True),
+    Source("L-shaped room", "data/scenes/formats/test4.vs3", True),
+    Source("plate between plates", "data/field/plates.obj", False),
+    # Strips and slats are thinner than any cell here, and stay one cell wide.
+    Source("gunter2", "data/scenes/formats/gunter2.vs3", True, ("--accuracy", "1e-3"), coarsest=9),
+    Source("blinds room", "data/scenes/blinds_room.obj", True,
+           ("--accuracy", "1e-3", "--from", "floor,ceiling,table_top", "--to", "window,blind"), ("blind",), coarsest=9),
 ]
 LIMIT = 1e-3  # an entry that is farther from our bounds is counted
 COLUMNS = """scene setting across faces runs cpu_seconds seconds worst rms row_sum beyond_limit entries
@@ -55,8 +74,9 @@ class Cells:
 class Scene:
     """A scene that `exactff convert --divide` cuts into cells. names: its patches; longest: its longest edge."""
 
-    def __init__(self, program, source, folder):
+    def __init__(self, program, source, folder, sheets=()):
         self.program, self.source, self.folder, self.path = program, source, folder, folder / "scene.obj"
+        self.sheets = sheets
         run([program, "convert", source, self.path, "--force"])
         points, patches = read_obj(self.path)
         self.names = list(patches)
@@ -109,28 +129,38 @@ def rows_of(path):
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
-class Exact:
-    """The certified matrix of a scene: its file, the median time of three runs, and its widest entry."""
+def repeated(measurement):
+    """The results of three runs; the last item of a result is its processor seconds. Those of 10 s or more are single.
+    """
+    done = [measurement()]
+    while len(done) < 3 and done[0][-1] < 10:
+        done.append(measurement())
+    return done
 
-    def __init__(self, scene):
+
+class Exact:
+    """Our matrix of a scene: its file, the median time of three runs (of 10 s or more: a single one), and its widest
+    entry."""
+
+    def __init__(self, scene, options=("--certify",)):
         self.program, self.folder, self.names = scene.program, scene.folder, scene.names
         self.path = self.folder / "exact.csv"
-        command = [self.program, "matrix", scene.source, "--certify", "--threads", "1", "--force", "-o", self.path]
-        self.seconds = float(numpy.median([run(command)[2] for _ in range(3)]))
+        command = [self.program, "matrix", scene.source, *options, "--threads", "1", "--force", "-o", self.path]
+        self.seconds = float(numpy.median([one[2] for one in repeated(lambda: run(command))]))
         self.rows = rows_of(self.path)
         self.width = max(float(row["upper"]) - float(row["lower"]) for row in self.rows)
 
     def judge(self, matrix):
         """The errors of another program's matrix, by `exactff check`."""
-        names = self.names
+        at = {name: number for number, name in enumerate(self.names)}
         theirs, verdict = self.folder / "theirs.csv", self.folder / "check.json"
         with open(theirs, "w", encoding="utf-8", newline="") as file:
             table = csv.writer(file)
             table.writerow(["from", "to", "value"])
-            table.writerows([a, b, repr(float(matrix[i, j]))] for i, a in enumerate(names) for j, b in enumerate(names))
+            table.writerows([row["from"], row["to"], repr(float(matrix[at[row["from"]], at[row["to"]]]))]
+                            for row in self.rows)
         run([self.program, "check", self.path, theirs, "--max-abs", LIMIT, "--json", verdict], passing=(0, 1))
         found = json.loads(verdict.read_text(encoding="utf-8"))
-        at = {name: number for number, name in enumerate(names)}
         off = [max(float(row["lower"]) - value, value - float(row["upper"]))
                for row in self.rows for value in [matrix[at[row["from"]], at[row["to"]]]]]
         beyond = sum(error > LIMIT for error in off)
@@ -141,10 +171,8 @@ class Exact:
 
 
 def measure_once(solve, scene, across, exact, needs):
-    """What a setting gives: errors of the first run, median times of three runs; those of 10 s or more are single."""
-    done = [solve(scene, across, **needs)]
-    while len(done) < 3 and done[0][3] < 10:
-        done.append(solve(scene, across, **needs))
+    """What a setting gives: errors of the first run, median times of all runs."""
+    done = repeated(lambda: solve(scene, across, **needs))
     faces, matrix = done[0][:2]
     seconds, used = numpy.median([one[2:] for one in done], axis=0)
     return {"across": across, "faces": faces, "runs": len(done), "cpu_seconds": used, "seconds": seconds,
@@ -167,23 +195,27 @@ def measure(title, script, notes, settings, solve):
     path = folder / f"{script}.csv"
     finished = {(row["scene"], row["setting"], int(row["across"])) for row in rows_of(path)} if path.exists() else set()
     with open(path, "a", encoding="utf-8", newline="") as file:
-        table = csv.DictWriter(file, COLUMNS)
+        table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         if file.tell() == 0:
             for note in [f"title: {title}", f"command: validation/field/{script}.sh", *notes,
-                         "cells: exactff convert --divide, the longest edge / across"]:
+                         "cells: exactff convert --divide, the longest edge / across",
+                         *(f"exact, {source.label}: exactff matrix {source.path} {' '.join(source.ours)} --threads 1"
+                           for source in SCENES)]:
                 file.write(f"# {note}\n")
             table.writeheader()
-        for label, source, closed in SCENES:
-            place = folder / re.sub(r"\W", "_", label)
+        for source in SCENES:
+            missing = [(name, across, needs) for name, refinements, needs, only_closed in settings
+                       for across in refinements if source.coarsest <= across <= most and
+                       (source.closed or not only_closed) and (source.label, name, across) not in finished]
+            if not missing:
+                continue
+            place = folder / re.sub(r"\W", "_", source.label)
             place.mkdir(parents=True, exist_ok=True)
-            scene = Scene(program, source, place)
-            exact = Exact(scene)
-            for name, refinements, needs, only_closed in settings:
-                for across in refinements:
-                    if (label, name, across) in finished or (only_closed and not closed) or across > most:
-                        continue
-                    row = {"scene": label, "setting": name, **measure_once(solve, scene, across, exact, needs)}
-                    table.writerow({key: f"{value:.4g}" if isinstance(value, float) else value
-                                    for key, value in row.items()})
-                    file.flush()
-                    show(row)
+            scene = Scene(program, source.path, place, source.sheets)
+            exact = Exact(scene, source.ours)
+            for name, across, needs in missing:
+                row = {"scene": source.label, "setting": name, **measure_once(solve, scene, across, exact, needs)}
+                table.writerow({key: f"{value:.4g}" if isinstance(value, float) else value
+                                for key, value in row.items()})
+                file.flush()
+                show(row)

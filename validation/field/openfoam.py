@@ -122,5 +122,4 @@ SETTINGS = [
 if __name__ == "__main__":
     version = factors.run(["dpkg-query", "--show", "--showformat=${Version}", "openfoam"])[0]
     factors.measure("viewFactorsGen of OpenFOAM", "openfoam", [
-        f"OpenFOAM {version}, viewFactorsGen, one process; its time includes reading the mesh and writing the factors",
-        "exact: exactff matrix --certify --threads 1, accuracy 1e-6"], SETTINGS, solve)
+        f"OpenFOAM {version}, viewFactorsGen, one process; its time includes reading the mesh and writing the factors"], SETTINGS, solve)

@@ -89,6 +89,22 @@ class FieldFactors(unittest.TestCase):
         self.assertIn("C3D6, ELSET=BRICKS\n2, 9, 10, 11, 12, 13, 14\n", deck)
         self.assertIn("9, 1.0, 0.0, 1.0\n10, 0.0, 1.0, 1.0\n11, 0.0, 0.0, 1.0\n12, 1.0, 0.0, 1.01\n", deck)
 
+    def test_calculix_gets_triangles_for_polygons(self):
+        points = numpy.array([[0, 0, 0], [2, 0, 0], [2, 1, 0], [1, 1, 0], [0, 1, 0]], float)
+        polygon = factors.Cells(points, [[0, 1, 2], [0, 1, 2, 3, 4]], [0, 1], [0, 1], 2.0)
+        cells = calculix.without_polygons(polygon)
+        self.assertEqual(cells.corners, [[0, 1, 2], [5, 0, 1], [5, 1, 2], [5, 2, 3], [5, 3, 4], [5, 4, 0]])
+        self.assertEqual(list(cells.patch), [0] + [1] * 5)
+        numpy.testing.assert_allclose(cells.areas.sum(), 3)
+        numpy.testing.assert_allclose(cells.normals, [[0, 0, 1]] * 6)
+
+    def test_calculix_gets_backs_as_one_patch_more(self):
+        cells = calculix.with_backs(square_and_triangle(), [1])
+        self.assertEqual(cells.corners, [[0, 1, 2, 3], [4, 5, 6], [7, 8, 9]])
+        self.assertEqual(list(cells.patch), [0, 1, 2])
+        numpy.testing.assert_allclose(cells.points[7:], [[1, 0, 1.001], [0, 1, 1.001], [0, 0, 1.001]])
+        numpy.testing.assert_allclose(cells.normals[1:], [[0, 0, -1], [0, 0, 1]], atol=1e-15)
+
     def test_factors_of_patches_are_weighted_by_area(self):
         faces = numpy.array([[0, 0.25, 0.5], [0, 0, 0.25], [0.125, 0.5, 0]])
         patches = factors.of_patches(faces, numpy.array([1.0, 3.0, 2.0]), numpy.array([0, 0, 1]))
