@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests the explanations of the errors that openfoam.py and calculix.py find. A minute.
+"""Tests the explanations of the errors that openfoam.py and calculix.py find, and names some of them. Two minutes.
 
 Usage: /usr/bin/python3 -B validation/field/explain.py build/exactff, after openfoam.sh and calculix.sh
 
@@ -116,6 +116,17 @@ def explain_plates(program, folder):
         print(f"{name}, a plate with a front only: up {found[1][0, 1]:.5f}, down {found[1][1, 0]:.5f}")
 
 
+def name_worst(program, folder):
+    for path, across, one, other in (("data/scenes/formats/gunter2.vs3", 33, "VH_OF", "VH_WF"),
+                                     ("data/scenes/formats/gunter2.vs3", 17, "EBO", "VH_DA"),
+                                     ("data/scenes/blinds_room.obj", 17, "ceiling", "blind")):
+        scene = factors.Scene(program, path, folder)
+        entry = scene.names.index(one), scene.names.index(other)
+        for name, found in (("OpenFOAM", openfoam.solve(scene, across, 1)),
+                            ("CalculiX", calculix.solve(scene, across, "300."))):
+            print(f"{path}, {across} across, {one} to {other}: {name} {found[1][entry]:.4f}")
+
+
 with tempfile.TemporaryDirectory() as temporary:
-    for explain in explain_walls, explain_plates:
+    for explain in explain_walls, explain_plates, name_worst:
         explain(pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(temporary))
