@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Times view factors from patch to patch on one thread: processor seconds of whole runs of `exactff matrix`, medians.
 # Of 4,872 patches every 200th row is computed, on all threads. The seconds are those of all rows by that share, after
-# the time of the first row alone is taken off, so that reading the scene counts once. All rows by cells take half of
-# that, because each pair is computed once.
+# the time of the first row alone is taken off, so that reading the scene counts once. All rows take half of that,
+# because each pair is computed once.
 # Usage: time_view_factors.sh [RUNS] (3), after validation/test.sh has built everything. EXACTFF_BUILD names another
 # build folder.
 set -euo pipefail
@@ -64,16 +64,11 @@ row '402 patches, three cubes, 1e-6, estimated' cubes.obj
 
 rows=$(awk '$1 == "g" && ++n % 200 == 100 { print $2 }' building.obj | paste -sd,)
 TIMEFORMAT='%R'
-building() { # TEXT SHARE OPTION...: a row of the table; SHARE of the time of all rows
-  local which
-  for which in "${rows%%,*}" "$rows"; do
-    { time "$build/exactff" matrix building.obj --from "$which" --force -o factors.csv "${@:3}" > log 2>&1; } 2>> times
-  done
-  printf '| 4,872 patches of a furnished building, %s, all threads (%.1f entries of a row are wider) | | | %.0f |\n' "$1" \
-    "$(awk -F, '!/^#/ && $7 == "no" { ++wide } !/^#/ { ++all } END { print 4872 * wide / all }' factors.csv)" \
-    "$(awk -v further="$(tr ',' '\n' <<< "$rows" | wc -l)" -v share="$2" \
-      'NR == 1 { first = $1 } END { print first + share * ($1 - first) * 4871 / (further - 1) }' times)"
-  rm times
-}
-building '1e-3, budget 1,000' 0.5 --accuracy 1e-3 --budget 1000
-building 'draft of 144 views a row' 1 --draft
+for which in "${rows%%,*}" "$rows"; do
+  { time "$build/exactff" matrix building.obj --from "$which" --accuracy 1e-3 --budget 1000 --force -o factors.csv \
+    > log 2>&1; } 2>> times
+done
+printf '| 4,872 patches of a furnished building, 1e-3, budget 1,000, all threads (%.1f entries of a row are wider) | | | %.0f |\n' \
+  "$(awk -F, '!/^#/ && $8 == "no" { ++wide } !/^#/ { ++all } END { print 4872 * wide / all }' factors.csv)" \
+  "$(awk -v further="$(tr ',' '\n' <<< "$rows" | wc -l)" \
+    'NR == 1 { first = $1 } END { print first + 0.5 * ($1 - first) * 4871 / (further - 1) }' times)"

@@ -54,21 +54,6 @@ struct Matrix {
 [[nodiscard]] Matrix compute(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
                              const Options& options = {}, const Hooks& hooks = {});
 
-struct DraftOptions {
-  double accuracy = 1e-3;   // entries that are not wider, for F_ij and for F_ji, are `accurate`
-  std::size_t views = 144;  // of each row's patch, at least: 4 or 6 in each of 36 strata or more
-  bool backs = false, open = false;
-  int threads = 0;  // 0: all; does not affect the result
-};
-
-// A draft for thousands of patches, in which all entries of a row come from the same whole views (view.h) of points of
-// its patch. Every entry is `estimated`, or `zero` if that is proved; `cells` is the number of views. An entry that
-// no view has met has the value 0 and an upper bound. Without coplanar fronts, the values of a row with backs and open
-// add up to 1 by construction, which proves nothing about any of them. Throws as compute(); and InputError for a column
-// that is a face or transparent.
-[[nodiscard]] Matrix draft(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
-                           const DraftOptions& options = {}, const Hooks& hooks = {});
-
 // The sum of each row with its back and open, rounded outward: an enclosure as strong as the row's weakest claim.
 struct Sum {
   double lower = 0.0;
@@ -113,7 +98,6 @@ inline constexpr std::string_view kOpen = "(open)";
 // A row for each entry: from,to,factor,lower,upper,claim,way,accurate,area_from,area_to,cells,event_cells,limit.
 // Doubles read back to the same bits.
 [[nodiscard]] std::string csv_text(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options);
-[[nodiscard]] std::string csv_text(const Scene& scene, const Matrix& draft, const DraftOptions& options);
 
 // A matrix as its CSV file has it: with names instead of patches, otherwise to the same bits.
 struct Table {
@@ -125,8 +109,8 @@ struct Table {
   std::vector<std::uint32_t> lines;    // of all entries, in the order of the file: row by row, with back and open
   bool has_old_claims = false;         // "topology-proved" or "statistical", which are read as `estimated`
 };
-// Reads what csv_text wrote, also before `way` and `limit` were columns. Throws one InputError with file:line for every
-// problem.
+// Reads what csv_text wrote, also before `way` and `limit` were columns, and drafts: until 2026-11-26 there was a way
+// `views`, means of whole views, which is read as `points`. Throws one InputError with file:line for every problem.
 [[nodiscard]] Table read_csv(const std::filesystem::path& file);
 // Whether a file begins like one of these, by its content.
 [[nodiscard]] bool is_csv(const std::filesystem::path& file);

@@ -42,9 +42,8 @@ enum class Way {
   // independent points in each. The interval assumes nothing of the point factor but its largest value: that of an
   // unhidden source.
   kPoints,
-  kViews,  // The same from whole views, which serve a row (matrix::draft).
 };
-[[nodiscard]] std::string_view to_string(Way way);  // "cells", "points", "views"
+[[nodiscard]] std::string_view to_string(Way way);  // "cells", "points"
 
 // What ended the work on an entry that is wider than the accuracy.
 enum class Limit {

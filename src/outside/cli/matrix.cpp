@@ -43,8 +43,6 @@ constexpr const char* kMatrixFooter =
     "the accuracy.\n"
     "With --claim certified, or --certify, every entry is 'zero' or 'certified': the remainder of the quadrature and\n"
     "all roundings are proved as well. It costs up to a few times as much.\n"
-    "--draft takes a row from some whole views of its patch, for thousands of patches: all entries are 'estimated' or\n"
-    "'zero', and an entry that no view has met is 0 with an upper bound.\n"
     "With --backs and --to all,sky each row also has what meets the backs of faces, and what is open. Then it must\n"
     "add up to 1; if a row does not, the exit code is 1. Likewise if the bounds of the two directions of a pair\n"
     "contradict each other, with --both-directions. --two-sided wall adds the patch 'wall (back)', for rows and\n"
@@ -69,9 +67,6 @@ struct MatrixArguments {
   flags::SceneArguments scene;
   std::vector<std::string> from{"all"}, to{"all"}, two_sided;
   matrix::Options options;
-  bool draft = false;
-  bool has_accuracy = false;
-  std::size_t views = matrix::DraftOptions{}.views;
   bool plain = false;
   std::string csv, npz, view3d, energyplus, vtk;
   std::string zone = "Zone 1";
@@ -80,10 +75,10 @@ struct MatrixArguments {
   bool force = false;
 
   [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
-  // A pipe or a device has no journal, and a draft needs none.
+  // A pipe or a device has no journal.
   [[nodiscard]] bool keeps_work() const {
     std::error_code ignored;
-    return !csv.empty() && !draft && (!std::filesystem::is_other(csv, ignored) || resume || !shard.empty());
+    return !csv.empty() && (!std::filesystem::is_other(csv, ignored) || resume || !shard.empty());
   }
 };
 
@@ -156,10 +151,7 @@ bool test_rows(const MatrixArguments& args, const Scene& scene, const matrix::Ma
                                   : "with back and open it must add up to 1, so a bound of it does not hold",
          "please report the scene");
   }
-  if (args.plain || !all) return all;
-  std::cout << (args.draft
-                    ? "\nEvery row of a draft adds up to 1 by construction. This proves nothing about its entries.\n"
-                    : "\nEvery row adds up to 1 within its bounds.\n");
+  if (all && !args.plain) std::cout << "\nEvery row adds up to 1 within its bounds.\n";
   return all;
 }
 
@@ -196,10 +188,6 @@ void check_shard_and_resume(const MatrixArguments& args) {
     text::refuse(std::string(args.resume ? "--resume" : "--shard") + " is given without -o",
                  "finished pairs are kept beside the file of -o", "name a file, for example -o factors.csv");
   }
-  if (args.draft && (args.resume || !args.shard.empty())) {
-    text::refuse(std::string(args.resume ? "--resume" : "--shard") + " is given with --draft",
-                 "a draft takes whole rows from views, and keeps no pairs", "remove it");
-  }
   if (args.shard.empty()) return;
   for (const auto& [flag, given] :
        {std::pair("--plain", args.plain), std::pair("--npz", !args.npz.empty()), std::pair("--vtk", !args.vtk.empty()),
@@ -234,20 +222,12 @@ void check_row_of_vtk(const MatrixArguments& args, const std::vector<Selection>&
                to.empty() ? "name patches by --to" : "name one patch by --from");
 }
 
-matrix::DraftOptions draft_options(const MatrixArguments& args, const matrix::Options& options) {
-  return {options.factors.accuracy, args.views, options.backs, options.open, options.threads};
-}
-
 void write_files(const MatrixArguments& args, const Scene& scene, const matrix::Options& options,
                  const matrix::Matrix& matrix) {
   const auto write_text = [](const std::string& file, const auto& text) {
     if (!file.empty()) write_whole_file(file, text());
   };
-  if (!args.keeps_work())
-    write_text(args.csv, [&] {
-      return args.draft ? csv_text(scene, matrix, draft_options(args, options))
-                        : csv_text(scene, matrix, options.factors);
-    });
+  if (!args.keeps_work()) write_text(args.csv, [&] { return csv_text(scene, matrix, options.factors); });
   if (!args.npz.empty()) write_npz(scene, matrix, args.npz);
   write_text(args.view3d, [&] { return view3d_text(scene, matrix); });
   write_text(args.energyplus, [&] { return energyplus_text(scene, matrix, args.zone); });
@@ -303,7 +283,6 @@ std::unique_ptr<MatrixJob> job_of(const MatrixArguments& args, const jobs::Team*
   matrix::Request& request = job->request;
   request.scene = &job->scene;
   request.options = args.options;
-  if (args.draft && !args.has_accuracy) request.options.factors.accuracy = matrix::DraftOptions{}.accuracy;
   request.options.open = flags::take_sky(job->scene, to);
   if (args.options.threads == 0 && team != nullptr) request.options.threads = jobs::fair_threads(*team);
   request.from = flags::selections_named(job->scene, args.from);
@@ -313,22 +292,13 @@ std::unique_ptr<MatrixJob> job_of(const MatrixArguments& args, const jobs::Team*
   return job;
 }
 
-// A draft keeps no pairs, takes whole rows by itself, and has whole patches as columns.
-LateNote note_on_speed(const MatrixArguments& args, const matrix::Request& request, const jobs::Team* team) {
-  const bool whole = std::ranges::none_of(request.to, [](const Selection& to) { return to.face.has_value(); });
-  const bool can_draft = !args.draft && whole && team == nullptr && args.shard.empty() && !args.resume;
-  return LateNote(words_on_speed({&request, args.draft ? std::optional(args.views) : std::nullopt, can_draft}));
-}
-
-matrix::Matrix compute(const MatrixArguments& args, const MatrixJob& job) {
+matrix::Matrix compute(const MatrixJob& job) {
   const InterruptWatch watch("exactff: interrupted; nothing was written\n");
-  LateNote note = note_on_speed(args, job.request, nullptr);
+  LateNote note(words_on_speed(job.request));
   ProgressBar bar;
   const Hooks hooks = with_note(note, Hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted});
   const matrix::Request& request = job.request;
-  matrix::Matrix result = args.draft
-                              ? draft(job.scene, request.from, request.to, draft_options(args, request.options), hooks)
-                              : matrix::compute(job.scene, request.from, request.to, request.options, hooks);
+  matrix::Matrix result = matrix::compute(job.scene, request.from, request.to, request.options, hooks);
   bar.clear();
   return result;
 }
@@ -342,8 +312,7 @@ void print_summary(const MatrixArguments& args, const jobs::Summary& summary) {
 // The values of the finished file, or of no file at all.
 int finish(const MatrixArguments& args, const MatrixJob& job, const matrix::Matrix& matrix) {
   const matrix::Options& options = job.request.options;
-  print_warnings(args.draft ? problems_of_width(job.scene, matrix, draft_options(args, options))
-                            : problems_of_width(job.scene, matrix, options.factors));
+  print_warnings(problems_of_width(job.scene, matrix, options.factors));
   write_files(args, job.scene, options, matrix);
   args.plain ? print_plain(job.scene, matrix) : print_table(job.scene, matrix);
   const bool rows_hold = test_rows(args, job.scene, matrix),
@@ -357,7 +326,7 @@ int write(const MatrixArguments& args, jobs::Team* team) {
   check_outputs(args);
   if (!args.keeps_work()) {
     const std::unique_ptr<MatrixJob> job = job_of(args, nullptr);
-    return finish(args, *job, compute(args, *job));
+    return finish(args, *job, compute(*job));
   }
   Narrator narrator("pair");
   jobs::Summary summary;
@@ -365,7 +334,7 @@ int write(const MatrixArguments& args, jobs::Team* team) {
   const bool done = narrator.is_done(args.csv, [&] {
     job = job_of(args, team);
     const InterruptWatch watch(words_of_interruption("pair", args.csv));
-    LateNote note = note_on_speed(args, job->request, team);
+    LateNote note(words_on_speed(job->request));
     summary = matrix::write(job->request, args.csv, args.existing(), with_note(note, narrator.hooks(kNeverSlow)), team);
   });
   if (!done) return exit_code_of_interruption();
@@ -440,28 +409,14 @@ Command add_matrix(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces");
   command->add_option("--two-sided", args->two_sided, kTwoSidedHelp)->type_name("NAME");
-  CLI::Option* both = command->add_flag("--both-directions", args->options.factors.both_directions,
-                                        "Compute F_ij and F_ji apart, and compare A_i F_ij with A_j F_ji");
-  CLI::Option* accuracy = command
-                              ->add_option("--accuracy", args->options.factors.accuracy,
-                                           "Largest width of an entry, for F_ij and for F_ji; 1e-3 with --draft")
-                              ->capture_default_str();
-  CLI::Option* budget = command->add_option("--budget", args->options.factors.budget, kBudgetHelp)
-                            ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
-                            ->capture_default_str();
-  const ClaimOptions claims = add_claim(*command, args->options.factors.certify);
-  CLI::Option* draft =
-      command
-          ->add_flag("--draft", args->draft,
-                     "For thousands of patches: take each row from some whole views; entries are estimated")
-          ->excludes(budget)
-          ->excludes(claims.claim)
-          ->excludes(claims.certify)
-          ->excludes(both);
-  command->add_option("--views", args->views, "Least number of views of each row's patch")
-      ->check(CLI::Range(std::size_t{144}, std::size_t{1} << 24))
-      ->needs(draft)
+  command->add_flag("--both-directions", args->options.factors.both_directions,
+                    "Compute F_ij and F_ji apart, and compare A_i F_ij with A_j F_ji");
+  command->add_option("--accuracy", args->options.factors.accuracy, "Largest width of an entry, for F_ij and for F_ji")
       ->capture_default_str();
+  command->add_option("--budget", args->options.factors.budget, kBudgetHelp)
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
+      ->capture_default_str();
+  add_claim(*command, args->options.factors.certify);
   command->add_flag("--plain", args->plain,
                     "Print a line for each entry: FROM, TO, LOWER, UPPER, CLAIM, WAY, with tabs");
   add_outputs(*command, *args);
@@ -469,10 +424,7 @@ Command add_matrix(CLI::App& app) {
       ->add_option("--threads", args->options.threads,
                    "Number of threads (default: all); it does not affect the values")
       ->check(CLI::Range(0, 1024));
-  return {command, [args, accuracy] {
-            args->has_accuracy = accuracy->count() > 0;
-            return run(*args);
-          }};
+  return {command, [args] { return run(*args); }};
 }
 
 }  // namespace exactff::cli

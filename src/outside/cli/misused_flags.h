@@ -1,4 +1,5 @@
-// Words for command lines that CLI11 refuses: a flag that is not there, or one with the wrong number of numbers.
+// Words for command lines that CLI11 refuses: a flag that is not there, or no longer, or one with the wrong number of
+// numbers.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -32,35 +32,21 @@ void LateNote::tell_if_late() {
   std::cerr << clear_line + "note: this takes more than " + text::short_number(kLate) + " s. " + what + text_ + '\n';
 }
 
-std::string words_on_speed(const MatrixWork& work) {
-  const matrix::Options& options = work.request->options;
-  const ViewFactorOptions& factors = options.factors;
+std::string words_on_speed(const matrix::Request& request) {
+  const ViewFactorOptions& factors = request.options.factors;
   constexpr double kCoarse = 1e-3;
   std::vector<std::string> ways;
-  if (work.can_draft) {
-    std::vector<std::string> instead;
-    if (factors.certify) instead.emplace_back("--certify");
-    if (factors.both_directions) instead.emplace_back("--both-directions");
-    if (factors.budget != ViewFactorOptions().budget) instead.emplace_back("--budget");
-    ways.push_back("--draft" + (instead.empty() ? "" : " instead of " + text::enumerate(instead)) +
-                   ", whose entries are estimated");
+  if (factors.certify) ways.emplace_back("no --certify, so that errors are estimated");
+  if (factors.both_directions) ways.emplace_back("no --both-directions");
+  if (factors.accuracy < kCoarse) {
+    ways.push_back("--accuracy " + text::short_number(kCoarse) + " instead of " + text::shortest(factors.accuracy));
   }
-  if (work.views && *work.views > matrix::DraftOptions().views) {
-    ways.push_back("fewer --views than " + std::to_string(*work.views));
+  ways.push_back("a smaller --budget than " + std::to_string(factors.budget) + ", for wider entries");
+  if (request.options.backs) ways.emplace_back("no --backs");
+  if (request.from.size() > 1) {
+    ways.push_back("fewer rows than " + std::to_string(request.from.size()) + " by --from");
   }
-  if (!work.views) {
-    if (factors.certify) ways.emplace_back("no --certify, so that errors are estimated");
-    if (factors.both_directions) ways.emplace_back("no --both-directions");
-    if (factors.accuracy < kCoarse) {
-      ways.push_back("--accuracy " + text::short_number(kCoarse) + " instead of " + text::shortest(factors.accuracy));
-    }
-    ways.push_back("a smaller --budget than " + std::to_string(factors.budget) + ", for wider entries");
-    if (options.backs) ways.emplace_back("no --backs");
-  }
-  if (work.request->from.size() > 1) {
-    ways.push_back("fewer rows than " + std::to_string(work.request->from.size()) + " by --from");
-  }
-  return ways.empty() ? "" : "Faster: " + text::joined(ways, "; ");
+  return "Faster: " + text::joined(ways, "; ");
 }
 
 }  // namespace exactff::cli

@@ -46,12 +46,7 @@ Kind with_note(LateNote& note, Kind hooks) {
   return hooks;
 }
 
-struct MatrixWork {
-  const matrix::Request* request = nullptr;
-  std::optional<std::size_t> views = {};  // of a draft
-  bool can_draft = false;                 // --draft could be given instead
-};
-// "Faster: --draft, whose entries are estimated; --accuracy 1e-3 instead of 1e-06; ..."
-[[nodiscard]] std::string words_on_speed(const MatrixWork& work);
+// "Faster: --accuracy 0.001 instead of 1e-06; a smaller --budget than 100000, for wider entries; ..."
+[[nodiscard]] std::string words_on_speed(const matrix::Request& request);
 
 }  // namespace exactff::cli

@@ -133,14 +133,4 @@ std::vector<Problem> problems_of_width(const Scene& scene, const matrix::Matrix&
   return problems;
 }
 
-std::vector<Problem> problems_of_width(const Scene& scene, const matrix::Matrix& draft,
-                                       const matrix::DraftOptions& options) {
-  const std::vector<Wide> wide = wide_entries(scene, draft, Limit::kBudget);
-  if (wide.empty()) return {};
-  return {Problem{
-      .what = words_of_wide(scene, draft, wide, options.accuracy),
-      .why = "a row has some " + std::to_string(options.views) + " views; their bounds are as strong as their claims",
-      .suggestion = "give more views by --views, or ask for less by --accuracy"}};
-}
-
 }  // namespace exactff::cli

@@ -28,8 +28,6 @@ ClaimOptions add_claim(CLI::App& command, bool& certify);
 // For each reason why entries are wider than the accuracy: the widest of them, and what would help.
 [[nodiscard]] std::vector<Problem> problems_of_width(const Scene& scene, const matrix::Matrix& matrix,
                                                      const ViewFactorOptions& options);
-[[nodiscard]] std::vector<Problem> problems_of_width(const Scene& scene, const matrix::Matrix& draft,
-                                                     const matrix::DraftOptions& options);
 
 inline constexpr const char* kBudgetHelp =
     "Limit of work for an entry: the most cells, where one with many edges counts for several, and the most points";

@@ -27,6 +27,8 @@ std::optional<Word> named(std::string_view word) {
 
 // The words for two kinds of estimates that files had before `way` was a column.
 constexpr std::string_view kOldByCells = "topology-proved", kOldByPoints = "statistical";
+// A way of files with drafts: the mean of whole views.
+constexpr std::string_view kOldByViews = "views";
 
 class TableReader {
  public:
@@ -101,7 +103,7 @@ class TableReader {
     const bool is_old = claim == kOldByCells || claim == kOldByPoints;
     table_.has_old_claims = table_.has_old_claims || is_old;
     f.claim = is_old ? Claim::kEstimated : known<Claim>("claim", claim);
-    f.way = way_ ? known<Way>("way", csv_.field(*way_)) : claim == kOldByPoints ? Way::kPoints : Way::kCells;
+    f.way = way_ ? known_way(csv_.field(*way_)) : claim == kOldByPoints ? Way::kPoints : Way::kCells;
     const std::string& accurate = csv_.field(accurate_);
     if (accurate != "yes" && accurate != "no") {
       csv_.complain("'accurate' is " + text::in_quotes(accurate), "it says what is known of the entry",
@@ -110,6 +112,8 @@ class TableReader {
     f.accurate = accurate == "yes";
     if (limit_) f.limit = known<Limit>("limit", csv_.field(*limit_));
   }
+
+  Way known_way(const std::string& word) { return word == kOldByViews ? Way::kPoints : known<Way>("way", word); }
 
   template <class Word>
   Word known(const char* column, const std::string& word) {

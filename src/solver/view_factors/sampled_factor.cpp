@@ -16,6 +16,7 @@
 #include "view_factors/near_planes.h"
 #include "view_factors/split_strata.h"
 #include "view_factors/strata.h"
+#include "view_factors/stratified_mean.h"
 
 namespace exactff::view_factors {
 namespace {
@@ -26,7 +27,9 @@ static_assert(kFirstStrata >= kFewestStrata);
 constexpr double kOfExpected = 0.95;     // of a width: what is expected is a little less
 constexpr double kNarrower = 0.1;        // than the look before
 constexpr double kLeastOfWidths = 0.75;  // of the width that is expected if F is the same in every stratum
-constexpr double kDecay = 1.5;           // of the square of the error: the exponent of the number of strata
+constexpr double kDecay = 1.5;           // of the square of a mean: the exponent of the number of strata
+constexpr double kCaution = 1.4;         // so much more is expected than predicted
+constexpr double kFirstSquare = 2.0;     // what the first look expects, in squares of the range
 
 constexpr std::size_t kPointsOfSplit = 2 * kPointsOfStratum;  // more after a split than before, at most
 
@@ -110,9 +113,8 @@ class LargestFactors {
 
 // Of means over the patch.
 struct Look {
-  StratifiedMean f;
-  StratifiedMean unknown;  // what F may be where it is not known
-  Ranges ranges;
+  StratifiedMean least, most;  // what F is, or may be where it is not known
+  std::size_t strata = 0;
 };
 
 std::vector<Part> fragments_of(const ExactScene& scene, const std::vector<Part>& parts) {
@@ -161,49 +163,61 @@ class SampledMean::Looks {
   // Of the first look, on average.
   [[nodiscard]] std::uint64_t effort_of_point() const { return effort_of_point_; }
   [[nodiscard]] std::uint64_t effort_after_next() const { return effort_of_point_ * points_after_next(); }
-  [[nodiscard]] std::size_t strata() const { return last_strata_; }  // of the last look
+  [[nodiscard]] std::size_t strata() const { return last_.strata; }  // of the last look
   // False if all points might then be more than `most`, or the strata are too small.
   bool split_within(std::size_t most) { return points_after_next() + kPointsOfSplit <= most && strata_.split(); }
 
   // Of the next look, from the bounds and the last look.
   [[nodiscard]] double expected_width() const {
-    const double ratio = static_cast<double>(last_strata_) / static_cast<double>(strata_.strata().strata.size());
-    StratifiedMean f = last_.f;
-    f.square *= std::pow(ratio, kDecay);
-    const double error = f.error(risk_of(number_ + 1), strata_.ranges(), last_.unknown);
-    return std::min(1.0, f.value + error) - std::max(0.0, f.value - error);
+    const auto error = [&](const StratifiedMean& last) {
+      const double square = expected_square(last);
+      return StratifiedMean{.expected = square, .square = square}.error(strata_.largest(), risk_of(number_ + 1));
+    };
+    return std::min(1.0, last_.most.value + error(last_.most)) - std::max(0.0, last_.least.value - error(last_.least));
   }
 
   std::pair<double, double> look() {
-    last_ = {};
-    last_strata_ = strata_.strata().strata.size();
-    for (std::size_t s = 0; s < last_strata_; ++s) {
+    Look next;
+    next.strata = strata_.strata().strata.size();
+    next.least.expected = expected_square(last_.least);
+    next.most.expected = expected_square(last_.most);
+    for (std::size_t s = 0; s < next.strata; ++s) {
       kernel::poll();
-      add(s);
+      add(s, next);
     }
+    last_ = next;
     ++number_;
     points_ += points_of_next();
     if (number_ == 1) effort_of_point_ = factors_.effort() / points_;
-    const double error = last_.f.error(risk_of(number_), last_.ranges, last_.unknown);
-    return {last_.f.value, error + of_shares_ + kRoundedPoints};
+    const auto error = [&](const StratifiedMean& mean) { return mean.error(strata_.largest(), risk_of(number_)); };
+    const double below = error(last_.least), above = last_.most.value - last_.least.value + error(last_.most);
+    return {last_.least.value, std::max(below, above) + of_shares_ + kRoundedPoints};
   }
 
  private:
-  void add(std::size_t stratum) {
+  // Of the next look, from a mean of the last one.
+  [[nodiscard]] double expected_square(const StratifiedMean& last) const {
+    if (number_ == 0) return kFirstSquare * strata_.largest() * strata_.largest();
+    const double ratio = static_cast<double>(last_.strata) / static_cast<double>(strata_.strata().strata.size());
+    return kCaution * last.square * std::pow(ratio, kDecay);
+  }
+
+  void add(std::size_t stratum, Look& look) {
     const Strata& strata = strata_.strata();
-    const double range = strata_.range(stratum);
-    std::array<double, kDraws> known{}, unknown{};
+    const double range = strata_.range(stratum), guess = strata_.guess(stratum);
+    std::array<double, kDraws> least{}, most{};
     for (std::size_t d = 0; d < kDraws; ++d) {
       Draws draws(number_, stratum, d);
       const Tile& tile = draw_tile(strata, strata.strata[stratum], d, draws);
       const Point point = point_in(from_[tile.part], tile, draws, scene_.units);
       const std::optional<double> value = factors_.at(point, tile.part);
-      (value ? known : unknown)[d] = value.value_or(range);
+      least[d] = value.value_or(0.0);
+      most[d] = value.value_or(range);
     }
     const double share = strata.strata[stratum].area / strata.area;
-    last_.f.add(known[0], known[1], share);
-    last_.unknown.add(unknown[0], unknown[1], share);
-    last_.ranges.add(range, share);
+    look.least.add(least[0], least[1], guess, share);
+    look.most.add(most[0], most[1], guess, share);
+    strata_.set_guess(stratum, 0.5 * (least[0] + least[1]));
   }
 
   const ExactScene& scene_;
@@ -214,17 +228,14 @@ class SampledMean::Looks {
   SplitStrata strata_;
   std::size_t number_ = 0, points_ = 0;  // so far
   Look last_;
-  std::size_t last_strata_ = 0;
   std::uint64_t effort_of_point_ = 0;
 };
 
 SampledMean::SampledMean(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to, std::size_t most,
                          double ratio)
     : scene_(scene), from_(from), to_(to), most_(std::max(most, kPointsOfFirstLook)), ratio_(ratio) {
-  constexpr double kMany = 0x1p20;
-  const double mean = mean_of_bounds(scene, from, to);
-  const Ranges ranges{mean / kMany, mean * mean / kMany};
-  width_of_one_ = kMany * kLeastOfWidths * 2.0 * StratifiedMean{.value = 1.0}.error(risk_of(1), ranges);
+  const double range = mean_of_bounds(scene, from, to);
+  width_of_one_ = kLeastOfWidths * 2.0 * StratifiedMean().error(range, risk_of(1));
 }
 SampledMean::~SampledMean() = default;
 

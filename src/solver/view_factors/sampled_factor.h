@@ -2,8 +2,9 @@
 //
 // The receiver's parts are cut where other faces stand on them or pierce them, since F jumps there, and then into
 // strata. In each, two independent points are drawn. A point's F is the exact solver's (exact.h). strata.h has the
-// points and the interval, which assumes nothing of F but that it is at most what distance and slope allow
-// (factor_bound.h). So strata are split where this, times their area, is the largest (split_strata.h).
+// points, stratified_mean.h the interval, which assumes nothing of F but that it is at most what distance and slope
+// allow (factor_bound.h). So strata are split where this, times their area, is the largest (split_strata.h). What a
+// stratum has shown is the guess for the next look at its parts.
 //
 // Looks. Each look has points of its own, for an interval of a tenth of the width of the last one or, where the points
 // were not enough, of the same width again; how many are needed is predicted from the bounds and from the last look.

@@ -48,7 +48,7 @@ std::vector<Tile> thirds_of(const Tile& triangle) {
 SplitStrata::SplitStrata(const std::vector<Part>& parts, std::size_t count, RangeOf range)
     : parts_(parts), range_(std::move(range)), strata_(strata_of(parts, count)) {
   const std::vector<Stratum> first = std::exchange(strata_.strata, {});
-  for (std::size_t s = 0; s < first.size(); ++s) put(s, first[s], 1.0);
+  for (std::size_t s = 0; s < first.size(); ++s) put(s, first[s], {1.0, 0.0});
 }
 
 double SplitStrata::range_of(const Stratum& stratum) const {
@@ -62,14 +62,15 @@ bool SplitStrata::is_less_urgent(std::size_t a, std::size_t b) const {
 }
 
 // At a place that is free, or at the end.
-void SplitStrata::put(std::size_t place, const Stratum& stratum, double most) {
+void SplitStrata::put(std::size_t place, const Stratum& stratum, const Known& of_whole) {
   if (place == strata_.strata.size()) {
     strata_.strata.emplace_back();
     ranges_.emplace_back();
+    guesses_.emplace_back();
   }
   strata_.strata[place] = stratum;
-  ranges_[place] = std::min(most, range_of(stratum));
-  squares_ += weight(place) * weight(place);
+  ranges_[place] = std::min(of_whole.range, range_of(stratum));
+  guesses_[place] = of_whole.guess;
   heap_.push_back(place);
   std::ranges::push_heap(heap_, [this](std::size_t a, std::size_t b) { return is_less_urgent(a, b); });
 }
@@ -82,30 +83,29 @@ bool SplitStrata::split() {
   if (is_single && std::max(tile.columns, tile.rows) > kMostColumns / 2) return false;
   std::ranges::pop_heap(heap_, [this](std::size_t a, std::size_t b) { return is_less_urgent(a, b); });
   heap_.pop_back();
-  squares_ -= weight(place) * weight(place);
-  const double most = ranges_[place];
-  is_single ? cut(tile, most, place) : share_out(whole, most, place);
+  const Known known{ranges_[place], guesses_[place]};
+  is_single ? cut(tile, known, place) : share_out(whole, known, place);
   return true;
 }
 
 // Its tiles, to two strata of about the same area.
-void SplitStrata::share_out(const Stratum& whole, double most, std::size_t place) {
+void SplitStrata::share_out(const Stratum& whole, const Known& of_whole, std::size_t place) {
   Stratum first{whole.begin, whole.begin + 1, strata_.tiles[whole.begin].area};
   while (first.end + 1 < whole.end && first.area + strata_.tiles[first.end].area <= 0.5 * whole.area) {
     first.area += strata_.tiles[first.end++].area;
   }
   Stratum second{first.end, whole.end, 0.0};
   for (std::size_t t = second.begin; t < second.end; ++t) second.area += strata_.tiles[t].area;
-  put(place, first, most);
-  put(strata_.strata.size(), second, most);
+  put(place, first, of_whole);
+  put(strata_.strata.size(), second, of_whole);
 }
 
-void SplitStrata::cut(const Tile& tile, double most, std::size_t place) {
+void SplitStrata::cut(const Tile& tile, const Known& of_whole, std::size_t place) {
   const bool is_triangle = tile.shape == Tile::Shape::kTriangle;
   for (const Tile& piece : is_triangle ? thirds_of(tile) : halves_of(tile, parts_[tile.part])) {
     const std::size_t at = strata_.tiles.size();
     strata_.tiles.push_back(piece);
-    put(place, {at, at + 1, piece.area}, most);
+    put(place, {at, at + 1, piece.area}, of_whole);
     place = strata_.strata.size();
   }
 }

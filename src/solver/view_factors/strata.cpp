@@ -149,22 +149,6 @@ Point point_in(const Part& part, const Tile& tile, Draws& draws, const Units& un
   return places.point(part, places.across(), places.up(), units);
 }
 
-std::vector<Point> points_in(const Part& part, const Tile& tile, Draws& draws, const Units& units) {
-  const PlacesIn places(tile, draws);
-  const std::uint64_t a = places.across(), b = places.up();
-  const auto point = [&](std::uint64_t across, std::uint64_t up) { return places.point(part, across, up, units); };
-  if (tile.shape == Tile::Shape::kParallelogram) return {point(a, b), point(kWholeTile - a, kWholeTile - b)};
-  const std::uint64_t c = kWholeTile - a - b;
-  return {point(a, b), point(b, c), point(c, a)};
-}
-
-Sample sample(const std::vector<Part>& parts, const Strata& strata, std::size_t look, std::size_t stratum,
-              std::size_t draw, const Units& units) {
-  Draws draws(look, stratum, draw);
-  const Tile& tile = draw_tile(strata, strata.strata[stratum], draw, draws);
-  return {tile.part, points_in(parts[tile.part], tile, draws, units)};
-}
-
 std::vector<Vec3> corners_of(const Part& part, const Tile& tile, const Units& units) {
   const Integer whole = Integer(tile.columns) * Integer(tile.rows);
   const auto at = [&](std::uint32_t across, std::uint32_t up) {
@@ -174,39 +158,6 @@ std::vector<Vec3> corners_of(const Part& part, const Tile& tile, const Units& un
   };
   if (tile.shape == Tile::Shape::kTriangle) return {at(0, 0), at(1, 0), at(0, 1)};
   return {at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
-}
-
-void Ranges::add(double range, double share) {
-  const double weighted = range * share;
-  largest = std::max(largest, weighted);
-  squares += weighted * weighted;
-}
-
-Ranges ranges_of(const Strata& strata, double range) {
-  Ranges ranges;
-  for (const Stratum& stratum : strata.strata) ranges.add(range, stratum.area / strata.area);
-  return ranges;
-}
-
-void StratifiedMean::add(double a, double b, double share) {
-  const double half = 0.5 * (a - b) * share;
-  value += 0.5 * (a + b) * share;
-  square += half * half;
-}
-
-double StratifiedMean::error(double risk, const Ranges& ranges) const {
-  const double of_two = std::log(8.0 / risk), of_one = std::log(4.0 / risk), r = 0.5 * ranges.largest;
-  const double unmet = 2.0 * r * r * of_one;
-  const double deviation = 0.5 * (std::sqrt(unmet) + std::sqrt(unmet + 4.0 * square)), third = r * of_two / 3.0;
-  const double bernstein = third + std::sqrt(third * third + 2.0 * deviation * deviation * of_two);
-  const double hoeffding = 0.5 * std::sqrt(of_two * ranges.squares);
-  const double none_met = value == 0.0 ? 0.5 * of_one * ranges.largest : HUGE_VAL;
-  return std::min({1.0, bernstein, hoeffding, none_met});
-}
-
-double StratifiedMean::error(double risk, const Ranges& ranges, const StratifiedMean& unknown) const {
-  const double root = std::sqrt(square) + std::sqrt(unknown.square);
-  return unknown.value + StratifiedMean{value + unknown.value, root * root}.error(0.5 * risk, ranges);
 }
 
 }  // namespace exactff::view_factors

@@ -56,71 +56,13 @@ struct Strata {
 // the square of half the difference of the halves' means.
 [[nodiscard]] const Tile& draw_tile(const Strata& strata, const Stratum& stratum, std::size_t draw, Draws& draws);
 
-// Points each of which is uniform in the tile, and whose mean is the tile's centre, so that the mean of a linear
-// function at them is exact: of a parallelogram two, opposite each other; of a triangle three, with the same weights in
-// turn at its corners.
-[[nodiscard]] std::vector<Point> points_in(const Part& part, const Tile& tile, Draws& draws, const Units& units);
-inline constexpr std::size_t kFewestPoints = 2;  // of a draw
-// The first of them alone.
+// Uniform in the tile.
 [[nodiscard]] Point point_in(const Part& part, const Tile& tile, Draws& draws, const Units& units);
 
 // Its corners, in the order of the part's, rounded once.
 [[nodiscard]] std::vector<Vec3> corners_of(const Part& part, const Tile& tile, const Units& units);
 
-// The points of one of the two draws of a stratum, in one part.
-struct Sample {
-  std::size_t part;
-  std::vector<Point> points;
-};
+// Of a stratum.
 inline constexpr std::size_t kDraws = 2;
-[[nodiscard]] Sample sample(const std::vector<Part>& parts, const Strata& strata, std::size_t look, std::size_t stratum,
-                            std::size_t draw, const Units& units);
-
-// Proved bounds of a function on strata: it lies in [0, R_s] on stratum s, with the share w_s of the area.
-struct Ranges {
-  double largest = 0.0;  // of w_s R_s
-  double squares = 0.0;  // the sum of (w_s R_s)^2
-
-  void add(double range, double share);
-  // For a range that is so many times as large everywhere.
-  [[nodiscard]] Ranges scaled(double factor) const { return {factor * largest, factor * factor * squares}; }
-};
-// Of a function with the same range everywhere.
-[[nodiscard]] Ranges ranges_of(const Strata& strata, double range);
-
-// The mean over the strata of a function, from two independent numbers a_s and b_s in each.
-//
-// It is the sum of independent terms w_s a_s / 2 and w_s b_s / 2, which lie in [0, r] with r = max w_s R_s / 2. Let V
-// be its variance. D_s = (w_s (a_s - b_s) / 2)^2 has a mean of at least the variance of stratum s, and lies in
-// [0, r^2]. No stratum is believed for agreeing with itself: nothing is assumed of the function but its ranges. Three
-// bounds of the error hold together with a probability of 1 - risk:
-//
-//   Bernstein     e = r L / 3 + sqrt((r L / 3)^2 + 2 V L),  L = log(8 / risk). V is not known, but a sum S of
-//                 independent numbers in [0, r^2] falls below its mean M by t or more with a probability of at most
-//                 exp(-t^2 / (2 r^2 M)) (Maurer, J. Inequal. Pure Appl. Math. 4(1), 2003). So with S the sum of the
-//                 D_s and l = log(4 / risk), sqrt(V) <= sqrt(M) <= (sqrt(2 r^2 l) + sqrt(2 r^2 l + 4 S)) / 2, except
-//                 with a probability of risk / 4. (As Maurer and Pontil, "Empirical Bernstein Bounds", COLT 2009, but
-//                 with differences inside strata.)
-//   Hoeffding     e = sqrt(log(8 / risk) sum (w_s R_s)^2) / 2 (J. Am. Stat. Assoc. 58, 1963).
-//   none is met   If all numbers are 0: let the function be positive on the share p_s of stratum s. Both numbers are 0
-//                 with a probability of at most (1 - p_s)^2 <= exp(-2 p_s), of all strata exp(-2 sum p_s), which is
-//                 risk / 4 if the sum is l / 2. The mean is at most sum w_s R_s p_s <= l / 2 max w_s R_s.
-//
-// The points of one draw are not independent, and need not be. Where two draws of a stratum lie in different halves of
-// it, their mean has no bias, the mean of D_s is even larger, and (1 - p)(1 - q) <= exp(-(p + q)) as well.
-struct StratifiedMean {
-  double value = 0.0;
-  double square = 0.0;  // the sum of the D_s
-
-  // The numbers of a stratum with this share of the area.
-  void add(double a, double b, double share);
-  // Exceeded with a probability of at most `risk`.
-  [[nodiscard]] double error(double risk, const Ranges& ranges) const;
-  // The same where the function is only known to lie between f, whose mean this is, and f + u, both within the ranges;
-  // `unknown` is the mean of u. Both bounds have half of the risk. The differences of f + u are at most the sums of
-  // those of f and of u, so their squares add up to at most the square of the sum of the two roots (Minkowski).
-  [[nodiscard]] double error(double risk, const Ranges& ranges, const StratifiedMean& unknown) const;
-  [[nodiscard]] StratifiedMean scaled(double factor) const { return {factor * value, factor * factor * square}; }
-};
 
 }  // namespace exactff::view_factors

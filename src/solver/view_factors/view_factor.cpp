@@ -236,8 +236,6 @@ std::string_view to_string(Way way) {
       return "cells";
     case Way::kPoints:
       return "points";
-    case Way::kViews:
-      return "views";
   }
   return {};
 }

@@ -64,11 +64,11 @@ void ViewEdges::start(const visibility::View& view) {
   work_ = {};
 }
 
-void ViewEdges::gather(const visibility::View& view, Wholes wholes,
-                       std::optional<std::span<const std::uint32_t>> among) {
+void ViewEdges::gather(const visibility::View& view, Wholes wholes) {
   const std::span<const Piece> pieces = view.scene.pieces();
-  kernel::Steps steps("faces", among ? among->size() : pieces.size());
-  const auto take = [&](std::uint32_t index) {
+  kernel::Steps steps("faces", pieces.size());
+  // In the order of the tree, so that neighbours in space are neighbours in memory.
+  shaft_tree(view.scene).query(view.x, {}, [&](std::uint32_t index) {
     const Piece& piece = pieces[index];
     steps.take();
     if (piece.transparent || (!view.on.empty() && view.is_own(piece.face))) return true;
@@ -77,12 +77,7 @@ void ViewEdges::gather(const visibility::View& view, Wholes wholes,
     const bool back_apart = wholes == Wholes::kFaces || wholes == Wholes::kPlanes;
     add(view, piece, facing > 0 && !back_apart ? kAllBacks : whole_of(view.scene, index, wholes), facing);
     return true;
-  };
-  if (among) {
-    for (const std::uint32_t index : *among) take(index);
-  } else {  // in the order of the tree, so that neighbours in space are neighbours in memory
-    shaft_tree(view.scene).query(view.x, {}, take);
-  }
+  });
   find_partners();
   seen_in_.assign(whole_.size(), 0);
 }

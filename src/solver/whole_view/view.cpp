@@ -16,7 +16,6 @@
 #include "kernel/ball.h"
 #include "kernel/float_environment.h"
 #include "scene/misuse.h"
-#include "whole_view/view_among.h"
 #include "whole_view/view_edges.h"
 
 namespace exactff {
@@ -70,13 +69,9 @@ Vec3 direction(const kernel::ExactVec3& exact) {
 
 class ViewSolver {
  public:
-  using Pieces = std::optional<std::span<const std::uint32_t>>;
-
-  // With `among`, all other pieces count as hidden.
   ViewSolver(const Scene& scene, const Receiver& receiver, const ViewOptions& options, WholeView& result,
-             Workspace& workspace, const Pieces& among = {})
+             Workspace& workspace)
       : scene_(scene),
-        among_(among),
         receiver_(receiver),
         options_(options),
         view_(scene, receiver),
@@ -88,11 +83,9 @@ class ViewSolver {
         all_(backs_ + 1) {}
 
   void run() {
-    edges_.find(view_,
-                options_.arcs    ? ViewEdges::Wholes::kFaces
-                : options_.faces ? ViewEdges::Wholes::kFronts
-                                 : ViewEdges::Wholes::kPatches,
-                among_);
+    edges_.find(view_, options_.arcs    ? ViewEdges::Wholes::kFaces
+                       : options_.faces ? ViewEdges::Wholes::kFronts
+                                        : ViewEdges::Wholes::kPatches);
     memory_.quick.start(view_.n);
     memory_.quick.find_terms(edges_, edges_.parts(), memory_.terms);
     memory_.references.clear();
@@ -249,7 +242,6 @@ class ViewSolver {
   }
 
   const Scene& scene_;
-  const Pieces among_;
   const Receiver& receiver_;
   const ViewOptions& options_;
   const visibility::View view_;
@@ -293,13 +285,6 @@ void view(const Scene& scene, const Receiver& receiver, const ViewOptions& optio
   const kernel::StandardArithmetic arithmetic;
   exact::check_view_arguments(scene, receiver, options.precision_cap);
   ViewSolver(scene, receiver, options, result, workspace).run();
-}
-
-void whole_view::view_among(const Scene& scene, std::span<const std::uint32_t> pieces, const Receiver& receiver,
-                            const ViewOptions& options, WholeView& result, Workspace& workspace) {
-  const kernel::StandardArithmetic arithmetic;
-  exact::check_view_arguments(scene, receiver, options.precision_cap);
-  ViewSolver(scene, receiver, options, result, workspace, pieces).run();
 }
 
 }  // namespace exactff

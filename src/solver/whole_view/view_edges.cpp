@@ -11,9 +11,9 @@ namespace exactff::whole_view {
 using Edge = Outlines::Edge;
 using Outline = Outlines::Outline;
 
-void ViewEdges::find(const visibility::View& view, Wholes wholes, std::optional<std::span<const std::uint32_t>> among) {
+void ViewEdges::find(const visibility::View& view, Wholes wholes) {
   start(view);
-  gather(view, wholes, among);
+  gather(view, wholes);
   windows_.find(outlines_, depths_.all());
   trace_all();
   examine_rivals();

@@ -66,7 +66,7 @@ class ViewEdges : public visibility::EdgeCovers {
     kPlanes,   // each face, and each triangle of a face that is not planar
   };
 
-  void find(const visibility::View& view, Wholes wholes, std::optional<std::span<const std::uint32_t>> among = {});
+  void find(const visibility::View& view, Wholes wholes);
 
   [[nodiscard]] std::span<const Sides> sides() const { return sides_; }
   [[nodiscard]] std::size_t outline_count() const { return whole_.size(); }
@@ -121,7 +121,7 @@ class ViewEdges : public visibility::EdgeCovers {
 
   // 1.
   void start(const visibility::View& view);
-  void gather(const visibility::View& view, Wholes wholes, std::optional<std::span<const std::uint32_t>> among);
+  void gather(const visibility::View& view, Wholes wholes);
   void add(const visibility::View& view, const Piece& piece, std::uint32_t whole, int facing);
   void classify_new_corners(const visibility::View& view);
   void clip();

@@ -16,38 +16,20 @@ namespace {
 
 using validation::RunningProgram;
 
-struct Asked {
-  Scene scene = models::make_scene("closed-room");
-  matrix::Request request{&scene, {scene.select("floor"), scene.select("lamp")}, {scene.select("floor")}, {}, {}};
-
-  [[nodiscard]] std::string words(bool can_draft, std::optional<std::size_t> views = {}) const {
-    return words_on_speed({&request, views, can_draft});
-  }
-};
-
 TEST(SpeedAdvice, DependsOnWhatWasAsked) {
-  Asked asked;
-  EXPECT_EQ(asked.words(true),
-            "Faster: --draft, whose entries are estimated; --accuracy 0.001 instead of 1e-06; a smaller --budget than "
-            "100000, for wider entries; fewer rows than 2 by --from");
-  asked.request.options.factors.certify = true;
-  asked.request.options.factors.accuracy = 0.01;
-  asked.request.options.backs = true;
-  asked.request.from.pop_back();
-  EXPECT_EQ(asked.words(true),
-            "Faster: --draft instead of --certify, whose entries are estimated; no --certify, so that errors are "
-            "estimated; a smaller --budget than 100000, for wider entries; no --backs");
-  asked.request.options.factors.both_directions = true;
-  EXPECT_EQ(asked.words(false),
+  const Scene scene = models::make_scene("closed-room");
+  matrix::Request request{&scene, {scene.select("floor"), scene.select("lamp")}, {scene.select("floor")}, {}, {}};
+  EXPECT_EQ(words_on_speed(request),
+            "Faster: --accuracy 0.001 instead of 1e-06; a smaller --budget than 100000, for wider entries; fewer rows "
+            "than 2 by --from");
+  request.options.factors.certify = true;
+  request.options.factors.both_directions = true;
+  request.options.factors.accuracy = 0.01;
+  request.options.backs = true;
+  request.from.pop_back();
+  EXPECT_EQ(words_on_speed(request),
             "Faster: no --certify, so that errors are estimated; no --both-directions; a smaller --budget than 100000, "
             "for wider entries; no --backs");
-}
-
-TEST(SpeedAdvice, OfADraftSpeaksOfItsViews) {
-  Asked asked;
-  EXPECT_EQ(asked.words(false, 4000), "Faster: fewer --views than 4000; fewer rows than 2 by --from");
-  asked.request.from.pop_back();
-  EXPECT_EQ(asked.words(false, matrix::DraftOptions().views), "");
 }
 
 // Once, on stderr, only while it takes long, and with the name of the pair.
@@ -68,7 +50,7 @@ TEST(SpeedAdvice, IsGivenOnceAfterSomeSeconds) {
   EXPECT_EQ(slow.wait(), 128 + SIGINT);
   const std::string said = slow.error();
   EXPECT_TRUE(
-      said.starts_with("note: this takes more than 5 s. It is slow from 'floor' to 'window'. Faster: --draft, "))
+      said.starts_with("note: this takes more than 5 s. It is slow from 'floor' to 'window'. Faster: --accuracy "))
       << said;
   EXPECT_EQ(said.find("note: "), said.rfind("note: ")) << said;
   const RunningProgram quick(EXACTFF_PROGRAM, {"matrix", "@closed-room", "--from", "lamp", "--to", "ceiling"},

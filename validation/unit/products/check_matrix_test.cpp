@@ -133,6 +133,26 @@ TEST_F(CheckMatrix, ClaimsOfOlderFilesAreEstimates) {
   EXPECT_FALSE(matrix::read_csv(truth_).has_old_claims);
 }
 
+// As `exactff matrix --draft` wrote it until 2026-11-26.
+TEST_F(CheckMatrix, WholeViewsOfOldDraftsArePoints) {
+  truth_ = write("draft.csv",
+                 "# exactff 0.1.0 matrix: view factors from patch to patch, areas in the scene's unit squared\n"
+                 "# scene hash f059258cc9a42927; accuracy 0.001, a draft of at least 144 views in each row\n"
+                 "# 1 row, 2 columns, hash of the patches 8565febb2b95be45, (back)\n"
+                 "from,to,factor,lower,upper,claim,way,accurate,area_from,area_to,cells,event_cells,limit\n"
+                 "a,a,0,0,0,zero,cells,yes,24,24,0,0,none\n"
+                 "a,b,0.25,0.125,0.5,estimated,views,no,24,1.125,168,0,budget\n"
+                 "a,(back),0.5,0.25,0.75,estimated,views,no,24,0,168,0,budget\n");
+  EXPECT_TRUE(matrix::is_csv(truth_));
+  const matrix::Table table = matrix::read_csv(truth_);
+  EXPECT_EQ(table.entries[0].way, Way::kCells);
+  EXPECT_EQ(table.entries[1].way, Way::kPoints);
+  EXPECT_EQ(table.back[0].way, Way::kPoints);
+  const OfMatrix found = report(write("m.csv", "from,to,value\na,a,0\na,b,0.375\n"));
+  EXPECT_TRUE(found.passed());
+  EXPECT_EQ(found.by_points, 1U);
+}
+
 TEST_F(CheckMatrix, WidthsThatWereAcceptedAreTold) {
   const OfMatrix found = report(write("m.csv", "0,0.5,0.4\n0.25,0,0.5\n0.1,0.25,0\n"), {.max_abs = 0.0});
   EXPECT_TRUE(found.passed());

@@ -12,6 +12,7 @@
 #include "kernel/vec.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/patch_parts.h"
+#include "view_factors/stratified_mean.h"
 
 namespace exactff::view_factors {
 namespace {
@@ -39,6 +40,22 @@ class SplitStrataOf : public testing::TestWithParam<std::vector<Vec3>> {
       result = std::max(result, 1.0 / (1.0 + 50.0 * nearest * nearest));
     }
     return result;
+  }
+
+  [[nodiscard]] Vec3 middle(const Tile& tile) const {
+    const std::vector<Vec3> corners = corners_of(parts_[tile.part], tile, exact_.units);
+    Vec3 sum;
+    for (const Vec3& corner : corners) sum = kernel::sum(sum, corner);
+    return kernel::scaled(sum, 1.0 / static_cast<double>(corners.size()));
+  }
+  // In the plane z = 0, counter-clockwise.
+  [[nodiscard]] bool holds(const Tile& tile, const Vec3& at) const {
+    const std::vector<Vec3> corners = corners_of(parts_[tile.part], tile, exact_.units);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vec3 &a = corners[i], &b = corners[(i + 1) % corners.size()];
+      if ((b.x - a.x) * (at.y - a.y) - (b.y - a.y) * (at.x - a.x) < 0.0) return false;
+    }
+    return true;
   }
 
   const Scene scene_ = build();
@@ -69,15 +86,13 @@ TEST_P(SplitStrataOf, ShareTheAreaAndHoldTheFunction) {
 TEST_P(SplitStrataOf, AreSmallWhereTheFunctionMayBeLarge) {
   SplitStrata split(parts_, 36, range_);
   while (split.strata().strata.size() < 1000) ASSERT_TRUE(split.split());
-  double sum = 0.0, worst = 0.0, squares = 0.0;
+  double sum = 0.0, worst = 0.0;
   for (std::size_t s = 0; s < split.strata().strata.size(); ++s) {
     const double weight = split.range(s) * split.strata().strata[s].area / split.strata().area;
     sum += weight;
     worst = std::max(worst, weight);
-    squares += weight * weight;
   }
-  EXPECT_DOUBLE_EQ(split.ranges().largest, worst);
-  EXPECT_NEAR(split.ranges().squares, squares, 1e-9 * squares);
+  EXPECT_DOUBLE_EQ(split.largest(), worst);
   EXPECT_LE(worst, 4.0 * sum / static_cast<double>(split.strata().strata.size()));
 }
 
@@ -92,7 +107,7 @@ TEST_P(SplitStrataOf, LeaveTheMeanAsItIs) {
         const Tile& tile = draw_tile(strata, strata.strata[s], d, draws);
         values[d] = f(point_in(parts_[tile.part], tile, draws, exact_.units).at);
       }
-      result.add(values[0], values[1], strata.strata[s].area / strata.area);
+      result.add(values[0], values[1], values[0], strata.strata[s].area / strata.area);
     }
     return result;
   };
@@ -109,6 +124,30 @@ TEST_P(SplitStrataOf, LeaveTheMeanAsItIs) {
   const double error = std::sqrt(square) / kLooks;
   EXPECT_NEAR(sum / kLooks, truth, 5.0 * error + 1e-5);
   EXPECT_LT(error, 1e-3 * truth);
+}
+
+// The first look sets their numbers as guesses; then each is that of the stratum that holds it, as far as its range
+// goes.
+TEST_P(SplitStrataOf, KeepTheGuessesOfWhatTheyWereSplitFrom) {
+  SplitStrata split(parts_, 36, range_);
+  const std::vector<Stratum> first = split.strata().strata;
+  std::vector<double> guesses;
+  for (std::size_t s = 0; s < first.size(); ++s) {
+    EXPECT_EQ(split.guess(s), 0.0);
+    const Tile tile = split.strata().tiles[first[s].begin];
+    guesses.push_back(f(middle(tile)));
+    split.set_guess(s, guesses.back());
+  }
+  std::vector<Tile> wholes;
+  for (const Stratum& stratum : first) wholes.push_back(split.strata().tiles[stratum.begin]);
+  while (split.strata().strata.size() < 500) ASSERT_TRUE(split.split());
+  for (std::size_t s = 0; s < split.strata().strata.size(); ++s) {
+    const Vec3 at = middle(split.strata().tiles[split.strata().strata[s].begin]);
+    const auto whole = std::ranges::find_if(wholes, [&](const Tile& tile) { return holds(tile, at); });
+    ASSERT_NE(whole, wholes.end());
+    const double guess = guesses[static_cast<std::size_t>(whole - wholes.begin())];
+    EXPECT_EQ(split.guess(s), std::min(guess, split.range(s))) << s;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, SplitStrataOf,

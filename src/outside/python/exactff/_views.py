@@ -25,7 +25,7 @@ class ViewFactor(NamedTuple):
     lower: float
     upper: float
     claim: str  #: "zero", "certified" (both proved), or "estimated": the error is an estimate, with roundings in it
-    way: str  #: how: "cells", "points" or "views"
+    way: str  #: how: "cells" or "points"
     accurate: bool  #: upper - lower is at most the accuracy, in both directions
     area_from: float  #: in the square of the scene's unit of length
     area_to: float

@@ -1,0 +1,128 @@
+// Intervals of means over strata, judged by numbers whose means are known.
+#include "view_factors/stratified_mean.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace exactff::view_factors {
+namespace {
+
+// Strata of equal area. On each, a function is `high` on a share of it and 0 elsewhere.
+struct Spots {
+  std::vector<double> shares, high;
+
+  [[nodiscard]] double weight() const { return 1.0 / static_cast<double>(shares.size()); }
+  [[nodiscard]] double mean() const {
+    double sum = 0.0;
+    for (std::size_t s = 0; s < shares.size(); ++s) sum += weight() * shares[s] * high[s];
+    return sum;
+  }
+  // Each range is 1. `guess`: of every stratum.
+  StratifiedMean look(std::mt19937_64& random, double guess, double expected) const {
+    StratifiedMean result{.expected = expected};
+    std::uniform_real_distribution<double> uniform;
+    for (std::size_t s = 0; s < shares.size(); ++s) {
+      const auto draw = [&] { return uniform(random) < shares[s] ? high[s] : 0.0; };
+      const double a = draw();
+      result.add(a, draw(), guess, weight());
+    }
+    return result;
+  }
+};
+
+Spots spots(std::size_t count, double share, double high = 1.0) {
+  return {std::vector(count, share), std::vector(count, high)};
+}
+
+// The probability with which an interval of risk 0.2 misses the mean.
+double missed(const Spots& of, double guess, double expected) {
+  constexpr int kLooks = 1000;
+  constexpr double kRisk = 0.2;
+  std::mt19937_64 random(7);
+  int missed = 0;
+  for (int i = 0; i < kLooks; ++i) {
+    const StratifiedMean mean = of.look(random, guess, expected);
+    missed += std::abs(mean.value - of.mean()) > mean.error(of.weight(), kRisk) ? 1 : 0;
+  }
+  return static_cast<double>(missed) / kLooks;
+}
+
+// None of 72 numbers meets anything.
+TEST(StratifiedMean, WhatNoNumberHasMetCounts) {
+  StratifiedMean mean;
+  for (int s = 0; s < 36; ++s) mean.add(0.0, 0.0, 0.0, 1.0 / 36.0);
+  const double error = mean.error(1.0 / 36.0, 1e-6), least = std::log(2e6) / 72.0;
+  EXPECT_GT(error, least);
+  EXPECT_LT(error, 1.02 * least);
+  EXPECT_LT(std::pow(1.0 - error, 72.0), 1e-6)
+      << "the probability that 72 draws miss a set of this share, evenly spread";
+  EXPECT_NEAR(mean.error(0.125 / 36.0, 1e-6), 0.125 * error, 1e-12) << "of a function that is an eighth as large";
+}
+
+TEST(StratifiedMean, IsKnownWhereNothingCanBeSeen) {
+  StratifiedMean mean;
+  mean.add(0.0, 0.0, 0.0, 1.0);
+  EXPECT_EQ(mean.error(0.0, 1e-6), 0.0);
+}
+
+// Rare, and common; all alike, and different; whatever was guessed and expected.
+TEST(StratifiedMean, IntervalsMissNoMoreThanTheirRisk) {
+  std::mt19937_64 random(1);
+  std::vector<Spots> all;
+  for (const double share : {0.002, 0.01, 0.03, 0.1, 0.5, 0.9, 0.999}) all.push_back(spots(60, share));
+  for (const double high : {0.1, 0.5}) all.push_back(spots(60, 0.5, high));
+  Spots mixed;
+  for (int s = 0; s < 60; ++s) {
+    mixed.shares.push_back(std::uniform_real_distribution<double>()(random));
+    mixed.high.push_back(std::uniform_real_distribution<double>()(random));
+  }
+  all.push_back(mixed);
+  const double r = 0.5 / 60.0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (const double guess : {0.0, 0.5, 1.0}) {
+      for (const double expected : {0.0, 2.0 * r * r, 30.0 * r * r})
+        EXPECT_LT(missed(all[i], guess, expected), 0.2) << i;
+    }
+  }
+}
+
+// The worst case: so few spots that they are often not met at all. The interval is not much wider than it must be.
+TEST(StratifiedMean, IntervalsAreNotMuchWiderThanTheyMustBe) {
+  const double share = 0.5 * std::log(10.0) / 60.0;  // unmet with a probability of about 0.1
+  double largest = 0.0;
+  for (double more = 1.0; more < 2.0; more += 0.02)
+    largest = std::max(largest, missed(spots(60, more * share), 0.0, 0.0));
+  EXPECT_GT(largest, 0.02);
+}
+
+// With good guesses, how large the function is does not matter.
+TEST(StratifiedMean, GuessesNarrowTheInterval) {
+  const auto error = [](double guess) {
+    StratifiedMean mean;
+    for (int s = 0; s < 100; ++s) mean.add(0.75, 0.75, guess, 0.01);
+    return mean.error(0.01, 1e-6);
+  };
+  EXPECT_DOUBLE_EQ(error(0.75), StratifiedMean().error(0.01, 1e-6));
+  EXPECT_GT(error(0.0), 2.0 * error(0.75));
+  EXPECT_GT(error(0.5), error(0.75));
+}
+
+// What is expected decides how wide the interval is, but only the right number makes it about the narrowest.
+TEST(StratifiedMean, IsNarrowestWhereTheSquareIsAsExpected) {
+  constexpr double kLargest = 0.01, kUnit = 0.25 * kLargest * kLargest;
+  for (const double square : {1.0, 10.0, 100.0, 1000.0}) {
+    const auto error = [&](double expected) {
+      return StratifiedMean{.expected = expected * kUnit, .square = square * kUnit}.error(kLargest, 1e-6);
+    };
+    for (const double off : {0.01, 0.1, 10.0, 100.0})
+      EXPECT_LT(error(square), error(off * square)) << square << ' ' << off;
+    EXPECT_LT(error(square), 0.5 * kLargest * (std::log(2e6) * 1.5 + std::sqrt(2.5 * std::log(2e6) * square)));
+  }
+}
+
+}  // namespace
+}  // namespace exactff::view_factors
