@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # calculix.sh [--quick]: holds the cavity radiation of CalculiX to the certified view factors of `exactff matrix`.
-# Installs Debian's CalculiX. Writes calculix.csv to build/field/calculix; with --quick, at most 9 faces along an
+# Installs Debian's CalculiX. Writes calculix.csv to build/field/calculix; with --quick, at most 10 faces along an
 # edge, to build/field/calculix_quick. An interrupted run continues; remove the folder to measure anew. EXACTFF_BUILD
 # names another build folder.
 set -euo pipefail

@@ -9,13 +9,32 @@ import resource
 import subprocess
 import sys
 import time
+import typing
 
 import numpy
 
+
+
+class Source(typing.NamedTuple):
+    """A scene to measure. ours: how `exactff matrix` computes it; sheets: patches whose backs are seen; coarsest: the
+    fewest cells along its longest edge."""
+
+    label: str
+    path: str
+    closed: bool
+    ours: tuple = ("--certify",)
+    sheets: tuple = ()
+    coarsest: int = 3
+
+
 SCENES = [
-    ("room with cube", "data/field/room_with_cube.obj", True),
-    ("L-shaped room", "data/scenes/formats/test4.vs3", True),
-    ("plate between plates", "data/field/plates.obj", False),
+    Source("room with cube", "data/field/room_with_cube.obj", True),
+    Source("L-shaped room", "data/scenes/formats/test4.vs3", True),
+    Source("plate between plates", "data/field/plates.obj", False),
+    # Strips and slats are thinner than any cell here, and stay one cell wide.
+    Source("gunter2", "data/scenes/formats/gunter2.vs3", True, ("--accuracy", "1e-3"), coarsest=9),
+    Source("blinds room", "data/scenes/blinds_room.obj", True,
+           ("--accuracy", "1e-3", "--from", "floor,ceiling,table_top", "--to", "window,blind"), ("blind",), coarsest=9),
 ]
 LIMIT = 1e-3  # an entry that is farther from our bounds is counted
 COLUMNS = """scene setting across faces runs cpu_seconds seconds worst rms row_sum beyond_limit entries
@@ -24,7 +43,7 @@ ONE_THREAD = {"OMP_NUM_THREADS": "1"}
 
 
 def read_obj(path):
-    """The patches of an OBJ file by name: lists of faces, which are arrays of vertices."""
+    """The vertices of an OBJ file, and its patches by name: lists of faces, which are lists of vertices."""
     vertices, patches, patch = [], {}, None
     for words in map(str.split, pathlib.Path(path).read_text(encoding="utf-8").splitlines()):
         if not words:
@@ -34,44 +53,57 @@ def read_obj(path):
         elif words[0] == "g":
             patch = patches.setdefault(words[1], [])
         elif words[0] == "f":
-            patch.append(numpy.array([vertices[int(word.split("/")[0]) - 1] for word in words[1:]]))
-    return patches
+            patch.append([int(word.split("/")[0]) - 1 for word in words[1:]])
+    return numpy.array(vertices), patches
 
 
 class Cells:
-    """The faces of a scene as grids of cells, about as large everywhere: `across` of them along the longest edge.
+    """Cells of a scene. points: coordinates; corners: the points of each cell, counter-clockwise before its front;
+    patch, block: the numbers of its patch and of its block; size: no side is longer. The cells of a patch follow each
+    other, and so do those of a block."""
 
-    points: coordinates; quads: the vertices of each cell, counter-clockwise before its front; patch: the number of its
-    patch; normals: of the faces at their points; blocks: for each cell the number, within its patch, of its block of
-    block x block cells. The cells of a patch follow each other. Points of different faces are different.
-    """
+    def __init__(self, points, corners, patch, block, size):
+        self.points, self.corners, self.size = points, corners, size
+        self.patch, self.block = numpy.array(patch), numpy.array(block)
+        rings = [points[cell] for cell in corners]
+        vectors = numpy.array([numpy.cross(ring[1:-1] - ring[0], ring[2:] - ring[0]).sum(axis=0) for ring in rings])
+        lengths = numpy.linalg.norm(vectors, axis=1)
+        self.areas, self.normals = lengths / 2, vectors / lengths[:, None]
 
-    def __init__(self, patches, across, block=1):
-        longest = max(numpy.linalg.norm(numpy.roll(face, -1, 0) - face, axis=1).max()
-                      for faces in patches.values() for face in faces)
-        points, normals, self.quads, self.patch, self.blocks = [], [], [], [], []
-        for number, faces in enumerate(patches.values()):
-            first_block = 0
-            for face in faces:
-                if len(face) != 4 or abs(face[0] - face[1] + face[2] - face[3]).max() > 1e-12 * longest:
-                    sys.exit(f"Patch {list(patches)[number]}: only parallelograms can be cut into cells here")
-                u, v = face[1] - face[0], face[3] - face[0]
-                m, n = (max(1, round(across * numpy.linalg.norm(side) / longest)) for side in (u, v))
-                start, normal = len(points), numpy.cross(u, v) / numpy.linalg.norm(numpy.cross(u, v))
-                points += [face[0] + u * (i / m) + v * (j / n) for i in range(m + 1) for j in range(n + 1)]
-                normals += [normal] * ((m + 1) * (n + 1))
-                for i, j in numpy.ndindex(m, n):
-                    corner = start + i * (n + 1) + j
-                    self.quads.append([corner, corner + n + 1, corner + n + 2, corner + 1])
-                    self.patch.append(number)
-                    self.blocks.append(first_block + i // block * -(-n // block) + j // block)
-                first_block = self.blocks[-1] + 1
-        self.points, self.normals = numpy.array(points), numpy.array(normals)
-        self.quads, self.patch, self.blocks = map(numpy.array, (self.quads, self.patch, self.blocks))
-        corners = self.points[self.quads]
-        sides = corners[:, 1] - corners[:, 0], corners[:, 3] - corners[:, 0]
-        self.areas = numpy.linalg.norm(numpy.cross(*sides), axis=1)
-        self.size = longest / across
+
+class Scene:
+    """A scene that `exactff convert --divide` cuts into cells. names: its patches; longest: its longest edge."""
+
+    def __init__(self, program, source, folder, sheets=()):
+        self.program, self.source, self.folder, self.path = program, source, folder, folder / "scene.obj"
+        self.sheets = sheets
+        run([program, "convert", source, self.path, "--force"])
+        points, patches = read_obj(self.path)
+        self.names = list(patches)
+        self.longest = max(numpy.linalg.norm(numpy.roll(points[face], -1, 0) - points[face], axis=1).max()
+                           for faces in patches.values() for face in faces)
+
+    def divided(self, path, length):
+        """The file of the cells of a scene, and for each cell the patch that it was cut from: NAME:k, or NAME if it is
+        the only one, from NAME."""
+        cut = path.with_suffix(".cut.obj")
+        run([self.program, "convert", path, cut, "--divide", repr(float(length)), "--force"])
+        whole = read_obj(path)[1]
+        return cut, {cell: cell if cell in whole else cell.rpartition(":")[0] for cell in read_obj(cut)[1]}
+
+    def cells(self, across, block=1):
+        """Cells by `--divide` with 1 / across of the longest edge, from blocks by `block` times that. A block is cut on
+        its own. The diagonal of a cell that is not exactly planar, and so becomes two triangles, may be longer."""
+        length = self.longest / across
+        path, patch_of = self.divided(self.path, block * length)
+        block_of = {cell: cell for cell in patch_of}
+        if block > 1:
+            path, block_of = self.divided(path, length)
+        points, faces = read_obj(path)
+        number = {block: k for k, block in enumerate(patch_of)}
+        return Cells(points, [face for face, in faces.values()],
+                     [self.names.index(patch_of[block_of[cell]]) for cell in faces],
+                     [number[block_of[cell]] for cell in faces], length)
 
 
 def of_patches(factors, areas, patch):
@@ -97,29 +129,38 @@ def rows_of(path):
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
-class Exact:
-    """The certified matrix of a scene: its file, the median time of three runs, and its widest entry."""
+def repeated(measurement):
+    """The results of three runs; the last item of a result is its processor seconds. Those of 10 s or more are single.
+    """
+    done = [measurement()]
+    while len(done) < 3 and done[0][-1] < 10:
+        done.append(measurement())
+    return done
 
-    def __init__(self, program, scene, folder):
-        self.program, self.folder = program, folder
-        self.path = folder / "exact.csv"
-        self.obj = folder / "scene.obj"
-        run([program, "convert", scene, self.obj, "--force"])
-        command = [program, "matrix", scene, "--certify", "--threads", "1", "--force", "-o", self.path]
-        self.seconds = float(numpy.median([run(command)[2] for _ in range(3)]))
+
+class Exact:
+    """Our matrix of a scene: its file, the median time of three runs (of 10 s or more: a single one), and its widest
+    entry."""
+
+    def __init__(self, scene, options=("--certify",)):
+        self.program, self.folder, self.names = scene.program, scene.folder, scene.names
+        self.path = self.folder / "exact.csv"
+        command = [self.program, "matrix", scene.source, *options, "--threads", "1", "--force", "-o", self.path]
+        self.seconds = float(numpy.median([one[2] for one in repeated(lambda: run(command))]))
         self.rows = rows_of(self.path)
         self.width = max(float(row["upper"]) - float(row["lower"]) for row in self.rows)
 
-    def judge(self, names, matrix):
+    def judge(self, matrix):
         """The errors of another program's matrix, by `exactff check`."""
+        at = {name: number for number, name in enumerate(self.names)}
         theirs, verdict = self.folder / "theirs.csv", self.folder / "check.json"
         with open(theirs, "w", encoding="utf-8", newline="") as file:
             table = csv.writer(file)
             table.writerow(["from", "to", "value"])
-            table.writerows([a, b, repr(float(matrix[i, j]))] for i, a in enumerate(names) for j, b in enumerate(names))
+            table.writerows([row["from"], row["to"], repr(float(matrix[at[row["from"]], at[row["to"]]]))]
+                            for row in self.rows)
         run([self.program, "check", self.path, theirs, "--max-abs", LIMIT, "--json", verdict], passing=(0, 1))
         found = json.loads(verdict.read_text(encoding="utf-8"))
-        at = {name: number for number, name in enumerate(names)}
         off = [max(float(row["lower"]) - value, value - float(row["upper"]))
                for row in self.rows for value in [matrix[at[row["from"]], at[row["to"]]]]]
         beyond = sum(error > LIMIT for error in off)
@@ -129,15 +170,13 @@ class Exact:
                 "row_sum": found["matrix"]["row_sum"]["by"], "beyond_limit": beyond, "entries": len(off)}
 
 
-def measure_once(solve, patches, across, place, exact, needs):
-    """What a setting gives: errors of the first run, median times of three runs; those of 20 s or more are single."""
-    done = [solve(patches, across, place, **needs)]
-    while len(done) < 3 and done[0][3] < 20:
-        done.append(solve(patches, across, place, **needs))
+def measure_once(solve, scene, across, exact, needs):
+    """What a setting gives: errors of the first run, median times of all runs."""
+    done = repeated(lambda: solve(scene, across, **needs))
     faces, matrix = done[0][:2]
     seconds, used = numpy.median([one[2:] for one in done], axis=0)
     return {"across": across, "faces": faces, "runs": len(done), "cpu_seconds": used, "seconds": seconds,
-            **exact.judge(list(patches), matrix), "exact_cpu_seconds": exact.seconds, "exact_width": exact.width}
+            **exact.judge(matrix), "exact_cpu_seconds": exact.seconds, "exact_width": exact.width}
 
 
 def show(row):
@@ -149,30 +188,34 @@ def show(row):
 
 def measure(title, script, notes, settings, solve):
     """Runs all settings on all scenes and writes the table. A setting: (name, values of across, what solve needs, only
-    closed scenes). solve(patches, across, folder, **needs) returns (number of faces, factors of patches, seconds,
+    closed scenes). solve(scene, across, **needs) returns (number of faces, factors of patches, seconds,
     processor seconds). Finished rows are kept."""
     program, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
-    most = 9 if "--quick" in sys.argv else 1000
+    most = 10 if "--quick" in sys.argv else 1000
     path = folder / f"{script}.csv"
     finished = {(row["scene"], row["setting"], int(row["across"])) for row in rows_of(path)} if path.exists() else set()
     with open(path, "a", encoding="utf-8", newline="") as file:
-        table = csv.DictWriter(file, COLUMNS)
+        table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         if file.tell() == 0:
-            for note in [f"title: {title}", f"command: validation/field/{script}.sh", *notes]:
+            for note in [f"title: {title}", f"command: validation/field/{script}.sh", *notes,
+                         "cells: exactff convert --divide, the longest edge / across",
+                         *(f"exact, {source.label}: exactff matrix {source.path} {' '.join(source.ours)} --threads 1"
+                           for source in SCENES)]:
                 file.write(f"# {note}\n")
             table.writeheader()
-        for scene, source, closed in SCENES:
-            place = folder / re.sub(r"\W", "_", scene)
+        for source in SCENES:
+            missing = [(name, across, needs) for name, refinements, needs, only_closed in settings
+                       for across in refinements if source.coarsest <= across <= most and
+                       (source.closed or not only_closed) and (source.label, name, across) not in finished]
+            if not missing:
+                continue
+            place = folder / re.sub(r"\W", "_", source.label)
             place.mkdir(parents=True, exist_ok=True)
-            exact = Exact(program, source, place)
-            patches = read_obj(exact.obj)
-            for name, refinements, needs, only_closed in settings:
-                for across in refinements:
-                    if (scene, name, across) in finished or (only_closed and not closed) or across > most:
-                        continue
-                    row = {"scene": scene, "setting": name,
-                           **measure_once(solve, patches, across, place, exact, needs)}
-                    table.writerow({key: f"{value:.4g}" if isinstance(value, float) else value
-                                    for key, value in row.items()})
-                    file.flush()
-                    show(row)
+            scene = Scene(program, source.path, place, source.sheets)
+            exact = Exact(scene, source.ours)
+            for name, across, needs in missing:
+                row = {"scene": source.label, "setting": name, **measure_once(solve, scene, across, exact, needs)}
+                table.writerow({key: f"{value:.4g}" if isinstance(value, float) else value
+                                for key, value in row.items()})
+                file.flush()
+                show(row)

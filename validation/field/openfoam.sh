@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # openfoam.sh [--quick]: holds viewFactorsGen of OpenFOAM to the certified view factors of `exactff matrix`. Installs
-# Debian's OpenFOAM. Writes openfoam.csv to build/field/openfoam; with --quick, at most 9 faces along an edge, to
+# Debian's OpenFOAM. Writes openfoam.csv to build/field/openfoam; with --quick, at most 10 faces along an edge, to
 # build/field/openfoam_quick. An interrupted run continues; remove the folder to measure anew. EXACTFF_BUILD names
 # another build folder.
 set -euo pipefail

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Tests what validation/field/openfoam.py and calculix.py read and write, without these programs.
 
-Usage: field_factors.py FIELD-FOLDER DATA-FOLDER
+Usage: field_factors.py PROGRAM FIELD-FOLDER DATA-FOLDER
 
 The recorded output is that of OpenFOAM 1912 and CalculiX 2.20 for data/field/plates.obj, one cell for each face.
 """
@@ -15,7 +15,7 @@ import unittest
 
 import numpy
 
-field, data = map(pathlib.Path, sys.argv[1:3])
+program, field, data = map(pathlib.Path, sys.argv[1:4])
 sys.path.insert(0, str(field))
 import calculix  # noqa: E402
 import factors  # noqa: E402
@@ -48,23 +48,62 @@ VWF = base64.b64decode(
     "QICOo/Tiohdf5P3T9OKiF1/k/dPyAAAAA=")
 
 
-def plates():
-    return factors.read_obj(data / "field/plates.obj")
+def plates(across, block=1):
+    with tempfile.TemporaryDirectory() as name:
+        return factors.Scene(program, data / "field/plates.obj", pathlib.Path(name)).cells(across, block)
+
+
+def square_and_triangle():
+    points = numpy.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [0, 1, 1], [1, 0, 1]], float)
+    return factors.Cells(points, [[0, 1, 2, 3], [4, 5, 6]], [0, 1], [0, 1], 1.0)
 
 
 class FieldFactors(unittest.TestCase):
     def test_cells_cover_their_patches_and_keep_their_front(self):
-        cells = factors.Cells(plates(), 4, 2)
+        cells = plates(4)
         numpy.testing.assert_allclose(numpy.bincount(cells.patch, cells.areas), [1, 1, 0.25, 0.25])
         self.assertEqual(list(numpy.bincount(cells.patch)), [16, 16, 4, 4])
-        corners = cells.points[cells.quads]
-        normals = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        self.assertEqual(list(numpy.sign(normals[[0, 16, 32, 36], 2])), [1, -1, 1, -1])
-        numpy.testing.assert_allclose(cells.normals[cells.quads[:, 0]], normals / cells.areas[:, None], atol=1e-15)
+        numpy.testing.assert_allclose(cells.normals, [[0, 0, 1]] * 16 + [[0, 0, -1]] * 16 + [[0, 0, 1]] * 4 +
+                                      [[0, 0, -1]] * 4, atol=1e-15)
+        self.assertEqual(list(cells.block), list(range(40)))
 
-    def test_blocks_are_numbered_within_their_patch_and_end_with_their_face(self):
-        both = {"both": plates()["below"] + plates()["above"]}
-        self.assertEqual(list(factors.Cells(both, 3, 2).blocks), [0, 0, 1, 0, 0, 1, 2, 2, 3, 4, 4, 5, 4, 4, 5, 6, 6, 7])
+    def test_blocks_are_squares_of_cells(self):
+        cells = plates(4, 2)
+        self.assertEqual(list(cells.block), [block for block in range(10) for _ in range(4)])
+        self.assertEqual(list(cells.patch), [0] * 16 + [1] * 16 + [2] * 4 + [3] * 4)
+        for block in range(10):
+            corners = numpy.unique(cells.points[numpy.array(cells.corners)[cells.block == block]].reshape(-1, 3), axis=0)
+            numpy.testing.assert_allclose(numpy.ptp(corners, axis=0), [0.5, 0.5, 0])
+
+    def test_cells_may_be_triangles(self):
+        cells = square_and_triangle()
+        numpy.testing.assert_allclose(cells.areas, [1, 0.5])
+        numpy.testing.assert_allclose(cells.normals, [[0, 0, 1], [0, 0, -1]])
+        with tempfile.TemporaryDirectory() as name:
+            openfoam.write_case(pathlib.Path(name), cells)
+            faces = (pathlib.Path(name) / "constant/polyMesh/faces").read_text()
+            calculix.write_deck(pathlib.Path(name) / "scene.inp", cells, "300.")
+            deck = (pathlib.Path(name) / "scene.inp").read_text()
+        self.assertIn("4(3 2 1 0)\n3(6 5 4)\n", faces)
+        self.assertIn("ELSET=BRICKS\n1, 1, 2, 3, 4, 5, 6, 7, 8\n*ELEMENT, TYPE=C3D6", deck)
+        self.assertIn("C3D6, ELSET=BRICKS\n2, 9, 10, 11, 12, 13, 14\n", deck)
+        self.assertIn("9, 1.0, 0.0, 1.0\n10, 0.0, 1.0, 1.0\n11, 0.0, 0.0, 1.0\n12, 1.0, 0.0, 1.01\n", deck)
+
+    def test_calculix_gets_triangles_for_polygons(self):
+        points = numpy.array([[0, 0, 0], [2, 0, 0], [2, 1, 0], [1, 1, 0], [0, 1, 0]], float)
+        polygon = factors.Cells(points, [[0, 1, 2], [0, 1, 2, 3, 4]], [0, 1], [0, 1], 2.0)
+        cells = calculix.without_polygons(polygon)
+        self.assertEqual(cells.corners, [[0, 1, 2], [5, 0, 1], [5, 1, 2], [5, 2, 3], [5, 3, 4], [5, 4, 0]])
+        self.assertEqual(list(cells.patch), [0] + [1] * 5)
+        numpy.testing.assert_allclose(cells.areas.sum(), 3)
+        numpy.testing.assert_allclose(cells.normals, [[0, 0, 1]] * 6)
+
+    def test_calculix_gets_backs_as_one_patch_more(self):
+        cells = calculix.with_backs(square_and_triangle(), [1])
+        self.assertEqual(cells.corners, [[0, 1, 2, 3], [4, 5, 6], [7, 8, 9]])
+        self.assertEqual(list(cells.patch), [0, 1, 2])
+        numpy.testing.assert_allclose(cells.points[7:], [[1, 0, 1.001], [0, 1, 1.001], [0, 0, 1.001]])
+        numpy.testing.assert_allclose(cells.normals[1:], [[0, 0, -1], [0, 0, 1]], atol=1e-15)
 
     def test_factors_of_patches_are_weighted_by_area(self):
         faces = numpy.array([[0, 0.25, 0.5], [0, 0, 0.25], [0.125, 0.5, 0]])
@@ -81,12 +120,12 @@ class FieldFactors(unittest.TestCase):
     def test_openfoam_factors_are_read(self):
         with tempfile.TemporaryDirectory() as name:
             case = pathlib.Path(name)
-            openfoam.write_case(case, plates(), factors.Cells(plates(), 1))
+            openfoam.write_case(case, plates(1))
             faces = re.findall(r"4\((\d+) (\d+) (\d+) (\d+)\)", (case / "constant/polyMesh/faces").read_text())
             (case / "constant/F").write_text(F)
             (case / "constant/globalFaceFaces").write_text(SEEN)
             matrix = openfoam.read_factors(case, 4)
-        corners = factors.Cells(plates(), 1).points[numpy.array(faces, int)]
+        corners = plates(1).points[numpy.array(faces, int)]
         outward = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2]
         self.assertEqual(list(numpy.sign(outward)), [-1, 1, -1, 1])
         # Centre to centre: the area of the other face over pi times the squared distance.
@@ -104,10 +143,11 @@ class FieldFactors(unittest.TestCase):
     def test_bricks_of_calculix_radiate_from_their_front(self):
         with tempfile.TemporaryDirectory() as name:
             deck = pathlib.Path(name) / "scene.inp"
-            calculix.write_deck(deck, factors.Cells(plates(), 1), "300.")
+            calculix.write_deck(deck, plates(1), "300.")
             lines = deck.read_text().splitlines()
-        brick = lines.index("*ELEMENT, TYPE=C3D8, ELSET=BRICKS") + 1
-        for line, up in zip(lines[brick:brick + 4], [1, -1, 1, -1]):
+        bricks = [after for line, after in zip(lines, lines[1:]) if line.startswith("*ELEMENT")]
+        self.assertEqual(len(bricks), 4)
+        for line, up in zip(bricks, [1, -1, 1, -1]):
             nodes = [lines[int(node)].split(",")[1:] for node in line.split(",")[1:]]
             corner = numpy.array([[float(word) for word in node] for node in nodes])
             outward = -numpy.cross(corner[1] - corner[0], corner[3] - corner[0])
