@@ -61,8 +61,9 @@ void SceneArguments::add_to(CLI::App& app) {
 void SceneArguments::add_divide_to(CLI::App& app) {
   app.add_option(
          "--divide", divide,
-         "Cut the faces into cells with sides of at most this length, each a patch NAME:k; NAME means all of them. In "
-         "--flip and --transparent, NAME:k is a face of the scene that is cut")
+         "Cut the faces into cells with sides of at most this length, each a patch NAME:k; NAME means all of them. A "
+         "cell that is not exactly planar becomes two triangles, whose common side may be longer. In --flip and "
+         "--transparent, NAME:k is a face of the scene that is cut")
       ->type_name("LENGTH")
       ->check(is_positive);
 }
