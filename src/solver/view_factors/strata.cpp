@@ -72,34 +72,6 @@ Point point_at(const Part& part, const Tile& tile, const Integer& s, const Integ
   return make_point(std::move(sum), units);
 }
 
-// A random place in a tile, as fractions of it.
-class PlacesIn {
- public:
-  PlacesIn(const Tile& tile, Draws& draws);
-  [[nodiscard]] std::uint64_t across() const { return across_; }
-  [[nodiscard]] std::uint64_t up() const { return up_; }
-  [[nodiscard]] Point point(const Part& part, std::uint64_t across, std::uint64_t up, const Units& units) const {
-    const Integer s = Integer(tile_.column * kWholeTile + across) * Integer(tile_.rows);
-    const Integer t = Integer(tile_.row * kWholeTile + up) * Integer(tile_.columns);
-    return point_at(part, tile_, s, t, whole_, units);
-  }
-
- private:
-  const Tile& tile_;
-  Integer whole_;
-  std::uint64_t across_, up_;
-};
-
-PlacesIn::PlacesIn(const Tile& tile, Draws& draws)
-    : tile_(tile),
-      whole_((Integer(tile.columns) * Integer(tile.rows)) << kWeightBits),
-      across_(draws.bits() >> (64 - kWeightBits)),
-      up_(draws.bits() >> (64 - kWeightBits)) {
-  if (tile.shape == Tile::Shape::kParallelogram || across_ + up_ <= kWholeTile) return;
-  across_ = kWholeTile - across_;
-  up_ = kWholeTile - up_;
-}
-
 }  // namespace
 
 Draws::Draws(std::size_t look, std::size_t stratum, std::size_t number)
@@ -145,8 +117,14 @@ const Tile& draw_tile(const Strata& strata, const Stratum& stratum, std::size_t 
 }
 
 Point point_in(const Part& part, const Tile& tile, Draws& draws, const Units& units) {
-  const PlacesIn places(tile, draws);
-  return places.point(part, places.across(), places.up(), units);
+  std::uint64_t across = draws.bits() >> (64 - kWeightBits), up = draws.bits() >> (64 - kWeightBits);
+  if (tile.shape == Tile::Shape::kTriangle && across + up > kWholeTile) {
+    across = kWholeTile - across;
+    up = kWholeTile - up;
+  }
+  const Integer s = Integer(tile.column * kWholeTile + across) * Integer(tile.rows);
+  const Integer t = Integer(tile.row * kWholeTile + up) * Integer(tile.columns);
+  return point_at(part, tile, s, t, (Integer(tile.columns) * Integer(tile.rows)) << kWeightBits, units);
 }
 
 std::vector<Vec3> corners_of(const Part& part, const Tile& tile, const Units& units) {
