@@ -85,7 +85,8 @@ class StrataOf : public testing::TestWithParam<Patch> {
       const auto value = [&](std::size_t draw) {
         return f(sample(parts_, strata, look, s, draw, exact_.units).point.at);
       };
-      mean.add(value(0), value(1), value(0), strata.strata[s].area / strata.area);
+      const double a = value(0);
+      mean.add(a, value(1), a, strata.strata[s].area / strata.area);
     }
     return mean;
   }
@@ -217,6 +218,40 @@ TEST(Strata, OfManyFacesShareTheirFacesWithoutBias) {
   const double average = sum / kLooks, spread = squares / kLooks - average * average;
   EXPECT_NEAR(average, odd / all, 5.0 * std::sqrt(spread / kLooks));
   EXPECT_GT(variance, 0.9 * spread);
+}
+
+// The mean of a function that is 1 on a strip of the unit square and 0 elsewhere. However the strip lies, the interval
+// holds its width, though all draws of most strata agree.
+TEST(Strata, IntervalsHoldTheMeansOfStrips) {
+  PlainScene plain;
+  plain.add_ring(plain.patch("square"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  const Scene scene = generate::build(plain);
+  const ExactScene exact(scene);
+  const std::vector<Part> parts = parts_of(exact, scene.select("square"));
+  constexpr std::size_t kLooks = 100;
+  for (const std::size_t count : {36, 100}) {
+    const Strata strata = strata_of(parts, count);
+    const double range = std::ranges::max(strata.strata, {}, &Stratum::area).area / strata.area;
+    for (const double width : {1e-4, 1e-3, 0.01, 0.03, 0.1, 0.5}) {
+      double largest = 0.0;
+      for (std::size_t look = 0; look < kLooks; ++look) {
+        const double from = 0.9 * (1.0 - width) * static_cast<double>(look) / kLooks;
+        StratifiedMean mean{.expected = range * range};
+        for (std::size_t s = 0; s < strata.strata.size(); ++s) {
+          const auto value = [&](std::size_t draw) {
+            const Point p = sample(parts, strata, look, s, draw, exact.units).point;
+            const double x = std::ldexp(p.at.x, static_cast<int>(exact.units.exponent + exact.units.shift));
+            return x >= from && x < from + width ? 1.0 : 0.0;
+          };
+          mean.add(value(0), value(1), 0.0, strata.strata[s].area / strata.area);
+        }
+        const double error = mean.error(range, 1e-6), off = std::abs(mean.value - width);
+        EXPECT_LE(off, error) << count << ' ' << width << ' ' << look;
+        largest = std::max(largest, off / error);
+      }
+      EXPECT_LT(largest, 1.0);
+    }
+  }
 }
 
 // Of a unit square with other faces on it.
