@@ -125,4 +125,5 @@ SETTINGS = [
 if __name__ == "__main__":
     version = factors.run(["dpkg-query", "--show", "--showformat=${Version}", "calculix-ccx"])[0]
     factors.measure("CalculiX", "calculix", [
-        f"CalculiX {version}, *VIEWFACTOR, WRITE ONLY, one thread; its time includes reading the input"], SETTINGS, solve)
+        f"CalculiX {version}, *VIEWFACTOR, WRITE ONLY, one thread; its time includes reading the input"],
+        SETTINGS, solve)

@@ -14,7 +14,6 @@ import typing
 import numpy
 
 
-
 class Source(typing.NamedTuple):
     """A scene to measure. ours: how `exactff matrix` computes it; sheets: patches whose backs are seen; coarsest: the
     fewest cells along its longest edge."""

@@ -46,7 +46,8 @@ def write_case(case, cells):
     mesh = "constant/polyMesh/"
     write(case, mesh + "points", "vectorField", listed("(%r %r %r)" % tuple(map(float, p)) for p in cells.points))
     # Boundary faces point out of the mesh; ours point to where they emit, into it.
-    write(case, mesh + "faces", "faceList", listed(f"{len(cell)}({' '.join(map(str, cell[::-1]))})" for cell in cells.corners))
+    write(case, mesh + "faces", "faceList", listed(
+        f"{len(cell)}({' '.join(map(str, cell[::-1]))})" for cell in cells.corners))
     write(case, mesh + "owner", "labelList", listed("0" for _ in cells.corners))
     write(case, mesh + "neighbour", "labelList", "0()")
     patches = cells.patch[-1] + 1
@@ -113,8 +114,8 @@ SETTINGS = [
     # The finest that viewFactorsGen knows: a ray between the centres of any two faces. Odd numbers of faces, since with
     # even ones many rays between the plates meet the very edge of the plate between them; 16 shows what that costs.
     ("each face alone", [3, 5, 9, 16, 17, 33], {"block": 1}, False),
-    # What faceAgglomerate is for: one ray between blocks, whose faces are summed over. Square blocks are its best case. Their
-    # number along an edge is odd, too.
+    # What faceAgglomerate is for: one ray between blocks, whose faces are summed over. Square blocks are its best case.
+    # Their number along an edge is odd, too.
     ("blocks of 2 x 2 faces", [10, 18, 34], {"block": 2}, False),
     ("blocks of 4 x 4 faces", [20, 36, 68], {"block": 4}, False),
 ]
@@ -122,4 +123,5 @@ SETTINGS = [
 if __name__ == "__main__":
     version = factors.run(["dpkg-query", "--show", "--showformat=${Version}", "openfoam"])[0]
     factors.measure("viewFactorsGen of OpenFOAM", "openfoam", [
-        f"OpenFOAM {version}, viewFactorsGen, one process; its time includes reading the mesh and writing the factors"], SETTINGS, solve)
+        f"OpenFOAM {version}, viewFactorsGen, one process; its time includes reading the mesh and writing the factors"],
+        SETTINGS, solve)

@@ -1,7 +1,6 @@
 #include "matrix/csv.h"
 
 #include <cstdint>
-#include <utility>
 
 #include "exactff/version.h"
 #include "text/csv_row.h"

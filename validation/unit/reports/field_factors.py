@@ -72,7 +72,8 @@ class FieldFactors(unittest.TestCase):
         self.assertEqual(list(cells.block), [block for block in range(10) for _ in range(4)])
         self.assertEqual(list(cells.patch), [0] * 16 + [1] * 16 + [2] * 4 + [3] * 4)
         for block in range(10):
-            corners = numpy.unique(cells.points[numpy.array(cells.corners)[cells.block == block]].reshape(-1, 3), axis=0)
+            quads = numpy.array(cells.corners)[cells.block == block]
+            corners = numpy.unique(cells.points[quads].reshape(-1, 3), axis=0)
             numpy.testing.assert_allclose(numpy.ptp(corners, axis=0), [0.5, 0.5, 0])
 
     def test_cells_may_be_triangles(self):
