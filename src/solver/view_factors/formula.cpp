@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "kernel/vec.h"
 
@@ -37,14 +39,64 @@ Formula::Formula(const Sight& sight, const std::vector<BoundaryPart>& parts, boo
     return QuickPart::Segment{points_[a].at, along, length(along)};
   };
   const auto end = [&](const End& e) {
-    if (!e.line) return QuickPart::End{{}, points_[e.vertex].at, false};
-    return QuickPart::End{segment(points_.line(*e.line).a, points_.line(*e.line).b), {}, true};
+    if (!e.line) return QuickPart::End{.kind = QuickPart::End::Kind::kVertex, .at = points_[e.vertex].at, .other = {}};
+    const Line& line = points_.line(*e.line);
+    return QuickPart::End{.kind = QuickPart::End::Kind::kCrossing, .at = {}, .other = segment(line.a, line.b)};
   };
   for (const BoundaryPart& part : parts) {
     const auto& [from, to, line, along] = part.edge;
     parts_.push_back({segment(from, to), end(part.from), end(part.to), static_cast<double>(part.sign)});
     in_receiver_plane_.push_back(side_of(receiver_, points_[from]) == 0 && side_of(receiver_, points_[to]) == 0);
   }
+  share_crossings();
+}
+
+// Where exactly two parts end at the crossing of two lines, on either line, so that their ends cancel each other.
+void Formula::share_crossings() {
+  struct Crossing {
+    LineId low, high;
+    std::size_t part;
+    bool is_to;
+  };
+  std::vector<Crossing> crossings;
+  for (std::size_t i = 0; i < exact_parts_.size(); ++i) {
+    for (const bool is_to : {false, true}) {
+      const BoundaryPart& part = exact_parts_[i];
+      const LineId own = part.edge.line;
+      if (const std::optional<LineId> other = (is_to ? part.to : part.from).line) {
+        crossings.push_back({std::min(own, *other), std::max(own, *other), i, is_to});
+      }
+    }
+  }
+  const auto lines = [](const Crossing& c) { return std::pair(c.low, c.high); };
+  std::ranges::stable_sort(crossings, {}, lines);
+  for (auto begin = crossings.begin(); begin != crossings.end();) {
+    const auto end = std::find_if(begin, crossings.end(), [&](const Crossing& c) { return lines(c) != lines(*begin); });
+    if (end - begin == 2) share(begin[0].part, begin[0].is_to, begin[1].part, begin[1].is_to);
+    if (end - begin == 1 && in_receiver_plane_[begin->part] != 0) move_to_foot(begin->part, begin->is_to);
+    begin = end;
+  }
+}
+
+// Of an edge on the horizon: the other edge's corner in the receiver's plane, where it meets the horizon.
+void Formula::move_to_foot(std::size_t part, bool is_to) {
+  const LineId line = *(is_to ? exact_parts_[part].to : exact_parts_[part].from).line;
+  for (const BoundaryPart& other : exact_parts_) {
+    if (other.edge.line != line) continue;
+    for (const PointId corner : {other.edge.from, other.edge.to}) {
+      if (side_of(receiver_, points_[corner]) != 0) continue;
+      end_of(part, is_to) = {.kind = QuickPart::End::Kind::kVertex, .at = points_[corner].at, .other = {}};
+    }
+  }
+}
+
+void Formula::share(std::size_t i, bool is_to_of_i, std::size_t j, bool is_to_of_j) {
+  const BoundaryPart &one = exact_parts_[i], &other = exact_parts_[j];
+  const bool cancel = (one.sign == other.sign) == (is_to_of_i != is_to_of_j);
+  if (!cancel || one.edge.line == other.edge.line) return;
+  using Kind = QuickPart::End::Kind;
+  end_of(i, is_to_of_i) = {.kind = Kind::kSharedOnEdge, .at = {}, .other = parts_[j].edge};
+  end_of(j, is_to_of_j) = {.kind = Kind::kSharedOnOther, .at = {}, .other = parts_[i].edge};
 }
 
 void Formula::at(std::span<const Vec3> points, std::span<Evaluated> values) const {

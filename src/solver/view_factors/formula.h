@@ -41,6 +41,11 @@ class Formula {
   [[nodiscard]] bool is_in_receiver_plane(std::size_t part) const { return in_receiver_plane_[part] != 0; }
 
  private:
+  void share_crossings();
+  void share(std::size_t i, bool is_to_of_i, std::size_t j, bool is_to_of_j);
+  void move_to_foot(std::size_t part, bool is_to);
+  QuickPart::End& end_of(std::size_t part, bool is_to) { return is_to ? parts_[part].to : parts_[part].from; }
+
   const Points& points_;
   const Plane& receiver_;
   std::vector<BoundaryPart> exact_parts_;

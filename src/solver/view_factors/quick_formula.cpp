@@ -67,29 +67,64 @@ EXACTFF_INLINE Four angle_of(const Four& y, const Four& x) {
   return where(y < 0.0, -half, half);
 }
 
-// A direction, and an estimate of the angle by which rounding may have turned it.
+// A direction; the angle by which rounding may have turned it, an estimate; and what else may be wrong of 2 pi F.
 struct FourSightings {
   FourVec direction;
-  Four error;
+  Four error, of_sum;
 };
 
-// Of an end of the edge from `a` to `b`, as seen from x; all but `end` relative to x.
-EXACTFF_INLINE FourSightings sighting(const QuickPart::End& end, const QuickPart::Segment& edge, const FourVec& a,
-                                      const FourVec& b, const FourVec& x) {
-  if (!end.crosses) {
-    const FourVec d = four(end.at) - x;
-    return {d, kDifferenceError / length(d)};
+// A segment relative to x, and the plane through both.
+struct FourSegment {
+  FourVec a, along, plane;
+  Four size, length;
+
+  EXACTFF_INLINE FourSegment(const QuickPart::Segment& segment, const FourVec& x)
+      : a(four(segment.a) - x),
+        along(four(segment.along)),
+        plane(cross(a, along)),
+        size(view_factors::length(plane)),
+        length(four(segment.length)) {}
+  [[nodiscard]] EXACTFF_INLINE FourVec b() const { return a + along; }
+  // The angle by which rounding may have turned the plane.
+  [[nodiscard]] EXACTFF_INLINE Four turn() const { return kDifferenceError * (at_least_length(a) + length) / size; }
+};
+
+// Where a plane crosses a segment from its one side to the other.
+struct FourCrossing {
+  FourVec at;
+  Four weight;
+
+  EXACTFF_INLINE FourCrossing(const FourSegment& segment, const FourVec& plane) {
+    const Four at_a = magnitude(dot(plane, segment.a));
+    weight = at_a + magnitude(dot(plane, segment.b()));
+    at = segment.a + where(weight > 0.0, at_a / weight, Four{}) * segment.along;
   }
-  const FourVec p = four(end.line.a) - x;
-  const FourVec plane = cross(p, four(end.line.along));
-  const Four at_a = magnitude(dot(plane, a)), weight = at_a + magnitude(dot(plane, b));
-  const FourMask is_seen = weight > 0.0;
-  const Four t = where(is_seen, at_a / weight, Four{});
-  const FourVec at = a + t * four(edge.along);
-  const Four of_plane =
-      kDifferenceError * (at_least_length(p) + end.line.length) * (at_least_length(a) + at_least_length(b)) / weight;
+};
+
+// The same numbers for both parts that end there.
+EXACTFF_INLINE FourSightings shared(const FourSegment& first, const FourSegment& second) {
+  const FourVec at = FourCrossing(first, second.plane).at, b = first.b();
+  const Four far = length(at);
+  const Four d = magnitude(dot(second.plane, at)) / (second.size * far) + second.turn() + kDifferenceError / far;
+  const Four tan_of_half = first.size / (length(first.a) * length(b) + dot(first.a, b));
+  const Four of_sum = d * (1.0 + 2.0 * tan_of_half);
+  return {at, Four{}, where(of_sum >= 0.0, of_sum, four(kInfinity))};
+}
+
+// Of an end of the edge, as seen from x.
+EXACTFF_INLINE FourSightings sighting(const QuickPart::End& end, const FourSegment& edge, const FourVec& x) {
+  if (end.kind == QuickPart::End::Kind::kVertex) {
+    const FourVec d = four(end.at) - x;
+    return {d, kDifferenceError / length(d), Four{}};
+  }
+  const FourSegment other(end.other, x);
+  if (end.kind == QuickPart::End::Kind::kSharedOnEdge) return shared(edge, other);
+  if (end.kind == QuickPart::End::Kind::kSharedOnOther) return shared(other, edge);
+  const auto [at, weight] = FourCrossing(edge, other.plane);
+  const Four of_plane = kDifferenceError * (at_least_length(other.a) + other.length) *
+                        (at_least_length(edge.a) + at_least_length(edge.b())) / weight;
   const Four error = (kDifferenceError + of_plane * edge.length) / length(at);
-  return {at, where(is_seen, error, four(kInfinity))};
+  return {at, where(weight > 0.0, error, four(kInfinity)), Four{}};
 }
 
 // An edge that is seen counter-clockwise round the visible region has a normal a x b that points away from the
@@ -102,18 +137,15 @@ EXACTFF_CLONES void evaluate_four(std::span<const QuickPart> parts, const Vec3& 
   const FourVec n = four(normal);
   Four sum{}, error{};
   for (const QuickPart& part : parts) {
-    const FourVec along = four(part.edge.along);
-    const FourVec a = four(part.edge.a) - x, b = a + along;
-    const FourVec plane = cross(a, along);
-    const Four size = length(plane);
-    const FourSightings from = sighting(part.from, part.edge, a, b, x), to = sighting(part.to, part.edge, a, b, x);
+    const FourSegment edge(part.edge, x);
+    const FourSightings from = sighting(part.from, edge, x), to = sighting(part.to, edge, x);
     const FourVec &p = from.direction, &q = to.direction;
-    const Four angle = angle_of(dot(cross(p, q - p), plane) / size, dot(p, q));
-    const Four cosine = dot(plane, n) / size;
-    const Four of_plane = magnitude(angle) * kDifferenceError * (at_least_length(a) + part.edge.length) / size;
-    const Four of_part =
-        kOfFirstOrder * (of_plane + magnitude(cosine) * (from.error + to.error)) + kOfTerm * magnitude(angle * cosine);
-    const FourMask is_seen = size > 0.0;
+    const Four angle = angle_of(dot(cross(p, q - p), edge.plane) / edge.size, dot(p, q));
+    const Four cosine = dot(edge.plane, n) / edge.size;
+    const Four of_part = kOfFirstOrder * (magnitude(angle) * edge.turn() + magnitude(cosine) * (from.error + to.error) +
+                                          from.of_sum + to.of_sum) +
+                         kOfTerm * magnitude(angle * cosine);
+    const FourMask is_seen = edge.size > 0.0;
     sum += where(is_seen, part.sign * angle * cosine, Four{});
     error += where(is_seen, of_part, four(kInfinity));
   }

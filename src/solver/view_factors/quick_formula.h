@@ -7,6 +7,13 @@
 // angle * cosine errs by |angle| times what turns the plane and |cosine| times what turns both ends. Four times that is
 // a bound where it is below 2^-6: it covers the higher orders, and the arithmetic, which errs by less than 2^-50 times
 // the same magnitudes, but for 2^-49 of the term itself.
+//
+// Shared crossings. Where two edges are almost seen along one another, their crossing Y can be anywhere on them, but F
+// hardly depends on it. So if exactly two parts end at it, with opposite signs, both end at the same point P, which
+// lies on the first of the two edges, between its ends, as Y does. Then the contour is wrong by the sides of a
+// triangle: from Y to P along the first edge, and along the second one from Y to the point of it that is nearest to P.
+// The third side, of length d, is missing. With z the angle from Y to P, the triangle's area is at most d tan(z / 2),
+// and z is at most the angle w of the first edge. So by Eq. (4), 2 pi F is wrong by at most d (1 + 2 tan(w / 2)).
 #pragma once
 
 #include <span>
@@ -27,9 +34,10 @@ struct QuickPart {
     double length = 0.0;
   };
   struct End {
-    Segment line;  // crosses the edge there, if `crosses`
-    Vec3 at;       // else
-    bool crosses = false;
+    enum class Kind { kVertex, kCrossing, kSharedOnEdge, kSharedOnOther };  // shared: where the point lies
+    Kind kind = Kind::kVertex;
+    Vec3 at;        // of a vertex
+    Segment other;  // else: crosses the edge there
   };
   Segment edge;
   End from, to;

@@ -1,4 +1,4 @@
-// Eq. (4) at four points at a time (view_factors/quick_formula.h), against the same sum in long double.
+// Eq. (4) at four points at a time (view_factors/quick_formula.h), against the same sum in long double or in balls.
 #include "view_factors/quick_formula.h"
 
 #include <gtest/gtest.h>
@@ -6,15 +6,18 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "generate/random.h"
+#include "kernel/ball.h"
 #include "kernel/vec.h"
 
 namespace exactff::view_factors {
 namespace {
 
 using generate::Random;
+using Kind = QuickPart::End::Kind;
 using Long3 = std::array<long double, 3>;
 
 Vec3 random_point(Random& random) {
@@ -41,7 +44,9 @@ struct CutEdge {
   Vec3 a, b, c, d;
   double sign = 1.0;
 
-  [[nodiscard]] QuickPart part() const { return {segment(a, b), {{}, a, false}, {segment(c, d), {}, true}, sign}; }
+  [[nodiscard]] QuickPart part() const {
+    return {segment(a, b), {Kind::kVertex, a, {}}, {Kind::kCrossing, {}, segment(c, d)}, sign};
+  }
   [[nodiscard]] long double term(const Vec3& normal, const Vec3& x) const {
     const Long3 p = minus(a, x), q = minus(b, x), plane = cross(p, q), other = cross(minus(c, x), minus(d, x));
     const long double at_p = std::abs(dot(other, p)), share = at_p / (at_p + std::abs(dot(other, q)));
@@ -78,6 +83,95 @@ TEST(QuickFormula, ErrsByNoMoreThanItSays) {
     EXPECT_LE(std::abs(found.value - expected), found.rounding) << round;
     EXPECT_LT(off > 0.1 ? found.rounding : 0.0, 1e-9) << round;
   }
+}
+
+// --- Two parts that end at one crossing, judged by balls ---
+
+using Ball3 = std::array<Ball, 3>;
+
+Ball3 minus_in_balls(const Vec3& a, const Vec3& b) {
+  constexpr long kBits = 400;
+  const auto difference = [](double p, double q) { return kernel::to_ball(p, kBits) - kernel::to_ball(q, kBits); };
+  return {difference(a.x, b.x), difference(a.y, b.y), difference(a.z, b.z)};
+}
+Ball3 cross(const Ball3& a, const Ball3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Ball dot(const Ball3& a, const Ball3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// The edges from a to b and from c to d, as seen from x; the parts are a to the crossing, and from there to d.
+struct Crossed {
+  Vec3 a, b, c, d, x;
+
+  [[nodiscard]] std::vector<QuickPart> parts() const {
+    return {{segment(a, b), {Kind::kVertex, a, {}}, {Kind::kSharedOnEdge, {}, segment(c, d)}, 1.0},
+            {segment(c, d), {Kind::kSharedOnOther, {}, segment(a, b)}, {Kind::kVertex, d, {}}, 1.0}};
+  }
+  // Nothing if they do not cross for certain.
+  [[nodiscard]] std::optional<double> value() const {
+    const Ball3 p = minus_in_balls(a, x), q = minus_in_balls(b, x), v = minus_in_balls(c, x), w = minus_in_balls(d, x);
+    const Ball3 one = cross(p, q), other = cross(v, w);
+    const std::optional<Ball3> on_one = crossing(p, q, other), on_other = crossing(v, w, one);
+    if (!on_one || !on_other || !(kernel::nearest_to_midpoint(dot(*on_one, *on_other)) > 0.0)) return std::nullopt;
+    return kernel::nearest_to_midpoint(term(p, *on_one, one) + term(*on_other, w, other));
+  }
+
+ private:
+  static std::optional<Ball3> crossing(const Ball3& from, const Ball3& to, const Ball3& plane) {
+    const Ball at_from = dot(plane, from), at_to = dot(plane, to);
+    if (!(kernel::nearest_to_midpoint(at_from) * kernel::nearest_to_midpoint(at_to) < 0.0)) return std::nullopt;
+    const Ball share = at_from / (at_from - at_to);
+    Ball3 at;
+    for (std::size_t i = 0; i < 3; ++i) at[i] = from[i] + (to[i] - from[i]) * share;
+    return at;
+  }
+  // For the normal (0, 0, 1).
+  static Ball term(const Ball3& from, const Ball3& to, const Ball3& plane) {
+    const Ball size = sqrt(dot(plane, plane)), angle = atan2(dot(cross(from, to), plane) / size, dot(from, to));
+    return kernel::to_ball(0.0, 400) - angle * plane[2] / (size * twice(kernel::pi(400)));
+  }
+};
+
+Vec3 shifted(const Vec3& at, double far, const Vec3& along) {
+  return {at.x + far * along.x, at.y + far * along.y, at.z + far * along.z};
+}
+
+// Almost along one another: both through one direction, the second one turned by `turn` about it.
+Crossed almost_along(Random& random, double turn) {
+  const Vec3 x = random_point(random), to = random_point(random), along = random_point(random);
+  const Vec3 at = shifted(x, 0.5, to), beyond = shifted(x, 0.5 + 0.5 * random.unit(), to);
+  const Vec3 turned = shifted(along, turn, random_point(random));
+  return {shifted(at, -0.3, along), shifted(at, 0.4, along), shifted(beyond, -0.5, turned),
+          shifted(beyond, 0.3, turned), x};
+}
+
+// The second one is seen almost end-on.
+Crossed end_on(Random& random, double aside) {
+  const Vec3 x = random_point(random), to = random_point(random), off = random_point(random);
+  const Vec3 near = shifted(x, 0.25, to), far = shifted(x, 0.75, to);
+  const Vec3 along = random_point(random), at = shifted(shifted(x, 0.5, to), 0.3 * aside, off);
+  return {shifted(at, -0.3, along), shifted(at, 0.4, along), shifted(near, aside, off),
+          shifted(far, -aside * random.unit(), off), x};
+}
+
+TEST(QuickFormula, OfASharedCrossingErrsByNoMoreThanItSays) {
+  Random random(3);
+  const Vec3 normal{0.0, 0.0, 1.0};
+  std::size_t seen = 0, precise = 0;
+  for (int round = 0; round < 4000; ++round) {
+    const double small = std::ldexp(1.0, -random.integer(1, 40));
+    const bool is_end_on = round % 2 == 0;
+    const Crossed crossed = is_end_on ? end_on(random, small) : almost_along(random, small);
+    const std::optional<double> expected = crossed.value();
+    if (!expected) continue;
+    ++seen;
+    Evaluated found;
+    evaluate(crossed.parts(), normal, {&crossed.x, 1}, {&found, 1});
+    EXPECT_LE(std::abs(found.value - *expected), found.rounding) << round;
+    precise += is_end_on || found.rounding < 1e-10 ? 1 : 0;
+  }
+  EXPECT_GT(seen, 2000U);
+  EXPECT_GT(precise, seen - seen / 50);
 }
 
 TEST(QuickFormula, PointsDoNotAffectOneAnother) {
