@@ -102,13 +102,13 @@ void judge(const Pair& pair, const HonestySize& size, HonestyScene& scene) {
 }
 
 void add_entry(const Pair& pair, Asked asked, double accuracy, std::size_t budget, HonestyScene& scene) {
-  const bool by_points = asked == Asked::kPoints;
-  if (by_points) budget = 1;
+  const bool by_points = asked == Asked::kPoints || asked == Asked::kCellsAndPoints;
+  if (asked == Asked::kPoints) budget = 1;
   const Selection &i = scene.is_turned ? pair.to : pair.from, &j = scene.is_turned ? pair.from : pair.to;
   const ViewFactor factor = view_factor(
       pair.scene, i, j,
       {.accuracy = accuracy, .budget = budget, .sample_crowds = by_points, .certify = asked == Asked::kCertified});
-  // With one cell, what needs none is proved, and not of interest here.
+  // What cells alone have found is not of interest here.
   if (by_points && factor.way != Way::kPoints) return;
   scene.entries.push_back({asked, accuracy, budget, scene.is_turned, factor, {}});
 }
@@ -118,7 +118,7 @@ void fill(HonestyScene& scene, std::uint64_t number, const HonestySize& size) {
   models::Random random(~number);  // of a stream that draws no scene
   const double accuracy = size.accuracies[random.below(size.accuracies.size())];
   const std::size_t budget = size.budgets[random.below(size.budgets.size())];
-  for (const Asked asked : {Asked::kCertified, Asked::kCells, Asked::kPoints}) {
+  for (const Asked asked : {Asked::kCertified, Asked::kCells, Asked::kPoints, Asked::kCellsAndPoints}) {
     add_entry(pair, asked, accuracy, budget, scene);
   }
   judge(pair, size, scene);

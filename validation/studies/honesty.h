@@ -3,10 +3,11 @@
 //
 // Every second scene has a floor, a source above it and one to four faces between, of the models karkanis, soup and
 // lattice; the others are made to break what is claimed (honest_families.h). The factor between two patches of it is
-// asked for as certified, as estimated by cells, and by points; the scene's number draws accuracy and budget. The
-// truth is what two certified enclosures have in common, one of F_ij and one of F_ji, computed apart. They are narrowed
-// until they judge the entries, or their cells are used up. An error counts only if it is proved: the entry's interval
-// and the truth have no number in common. Where they overlap without the truth being inside, the entry is left open.
+// asked for as certified, as estimated by cells, and by points, of the patch and of cells; the scene's number draws
+// accuracy and budget. The truth is what two certified enclosures have in common, one of F_ij and one of F_ji, computed
+// apart. They are narrowed until they judge the entries, or their cells are used up. An error counts only if it is
+// proved: the entry's interval and the truth have no number in common. Where they overlap without the truth being
+// inside, the entry is left open.
 #pragma once
 
 #include <cstdint>
@@ -49,8 +50,10 @@ struct ErrorRatio {
 // Requires an interval with a width.
 [[nodiscard]] ErrorRatio error_ratio(const ViewFactor& entry, const Bounds& truth);
 
-// How an entry was asked for. `kPoints`: with a budget of one cell. What comes back may be a better one.
-enum class Asked { kCertified, kCells, kPoints };
+// How an entry was asked for. `kPoints`: with a budget of one cell, so that points tell of the whole patch.
+// `kCellsAndPoints`: points tell of the cells that are not known when the budget is used up. What comes back may be a
+// better one.
+enum class Asked { kCertified, kCells, kPoints, kCellsAndPoints };
 struct HonestyEntry {
   Asked asked = Asked::kCertified;
   double accuracy = 0.0;

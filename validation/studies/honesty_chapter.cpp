@@ -86,7 +86,8 @@ std::string method_sentence(const HonestyStudy& study, const HonestySize& size) 
          "offsets. A view factor from one patch to another is asked for at one of " +
          counted(size.accuracies.size(), "accuracy", "accuracies") +
          ", as certified and as estimated, with budgets of " + text::enumerate(budgets) +
-         " cells, and with a single cell, which leaves points. The truth is what two certified enclosures have in "
+         " cells, alone and with points for what they leave unknown, and with a single cell, which leaves points. The "
+         "truth is what two certified enclosures have in "
          "common, one from each patch to the other. They are narrowed until they judge the entries, with up to " +
          std::to_string(size.truth_budgets.back()) +
          " cells each. An error exceeds the reported one if the entry’s interval and the truth have no "
