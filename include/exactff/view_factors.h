@@ -35,12 +35,12 @@ enum class Claim {
 // How a factor was found.
 enum class Way {
   // By cells, on each of which the visible boundary is proved. The error of an estimated factor is four times the
-  // difference of two Gauss rules, or, closer to an edge than 1.5 radii of the cell, the cell's whole area. Where the
-  // order of edges could not be decided on a cell (event cells), a bound is added.
+  // difference of two Gauss rules, or, closer to an edge than 1.5 radii of the cell, all that the point factor may be
+  // there. Where the order of edges could not be decided on a cell (event cells), a bound is added.
   kCells,
-  // In a crowd, where cells would cost more: the mean of exact point factors over at least 100 strata of a patch, two
-  // independent points in each. The interval assumes nothing of the point factor but its largest value: that of an
-  // unhidden source.
+  // Where cells would cost more: the mean of exact point factors over at least 100 strata, two independent points in
+  // each, of a patch or of all cells that are not known well; others count as by kCells. The interval assumes nothing
+  // of the point factor but its largest value: that of an unhidden source, or what is proved for a cell.
   kPoints,
 };
 [[nodiscard]] std::string_view to_string(Way way);  // "cells", "points"
@@ -57,7 +57,8 @@ enum class Limit {
 struct ViewFactorOptions {
   // Of F_ij and of F_ji: upper - lower is at most this. At the same budget, a smaller one never yields more.
   double accuracy = 1e-6;
-  // The limit of work for an entry: the most cells, where one with many edges counts for several, and the most points.
+  // The limit of work for an entry: the most cells, where one with many edges counts for several, and four points for
+  // each, both of the patch and of its cells.
   std::size_t budget = 100000;
   bool sample_crowds = true;  // take points where they are expected to cost less than cells
   // Compute F_ij and F_ji apart, each by cells of its own patch, so that each tests the other. Otherwise, if all faces

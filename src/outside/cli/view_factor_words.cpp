@@ -64,7 +64,8 @@ std::string words_of_wide(const Scene& scene, const matrix::Matrix& matrix, cons
 std::string why(Limit limit, std::size_t budget) {
   switch (limit) {
     case Limit::kBudget:
-      return "the limit of work for an entry, " + text::counted(budget, "cell") + " and as many points, is reached";
+      return "the limit of work for an entry, " + text::counted(budget, "cell") +
+             " and four points for each, is reached";
     case Limit::kCrowd:
       return "so much stands between that its cells would not fit into memory";
     case Limit::kRounding:

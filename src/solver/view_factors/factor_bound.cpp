@@ -110,4 +110,13 @@ double OpenFactorBound::factor_at(const Vec3& x) const {
   return std::clamp(sum / (2.0 * std::numbers::pi), 0.0, 1.0);
 }
 
+UnhiddenBound::UnhiddenBound(const Sight& sight) : by_distance_(sight) {
+  if (!sight.is_of_open()) open_.emplace(corners_of(sight), sight.receiver);
+}
+
+double UnhiddenBound::on(std::span<const Vec3> corners) const {
+  const double bound = by_distance_.on(corners);
+  return open_ ? std::min(bound, open_->on(corners)) : bound;
+}
+
 }  // namespace exactff::view_factors

@@ -24,7 +24,9 @@
 // roundings are less. kAsideOpen is more than all of them.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "view_factors/cell.h"
@@ -67,6 +69,20 @@ class OpenFactorBound {
 
   std::vector<Vec3> source_;  // the part in front of the receiver's plane
   Vec3 normal_;               // of the receiver; of length 1
+};
+
+// The smaller of both.
+class UnhiddenBound {
+ public:
+  UnhiddenBound(const std::vector<Vec3>& source, const Plane& source_plane, const Plane& receiver)
+      : by_distance_(source, source_plane, receiver), open_(std::in_place, source, receiver) {}
+  explicit UnhiddenBound(const Sight& sight);
+
+  [[nodiscard]] double on(std::span<const Vec3> corners) const;
+
+ private:
+  FactorBound by_distance_;
+  std::optional<OpenFactorBound> open_;  // if there is a source
 };
 
 }  // namespace exactff::view_factors

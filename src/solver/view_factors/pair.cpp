@@ -215,7 +215,7 @@ double Pair::largest_integral(const Cell& cell) const { return bound_.on(cell) *
 
 void Pair::add_dark(Cell cell, Candidates candidates, PairMemory::Way way, std::shared_ptr<const Plane> cut,
                     std::vector<Share>& shares) const {
-  const double half = 0.5 * largest_integral(cell);
+  const double bound = 0.5 * bound_.on(cell), half = bound * size_of(cell);
   shares.push_back({.cell = std::move(cell),
                     .candidates = std::move(candidates),
                     .formula = nullptr,
@@ -225,19 +225,29 @@ void Pair::add_dark(Cell cell, Candidates candidates, PairMemory::Way way, std::
                     .error = half * kSlack,
                     .stage = limits_.stage,
                     .is_event = true,
-                    .is_dark = true});
+                    .is_dark = true,
+                    .bound = bound * kSlack,
+                    .near = nullptr});
 }
 
-// By a rule of Gauss' and the one with a point less in each direction, from which the error is estimated; or it is the
-// whole cell.
+// By a rule of Gauss' and the one with a point less in each direction, from which the error is estimated; or all that F
+// can be.
 template <unsigned kCount>
 Pair::Integral Pair::integrate_by(const Formula& formula, const Cell& cell, double radii) const {
   const std::vector<Vec3> ring = positions_of(cell.corners);
   const Rule rule = gauss_integral<kCount>(formula, cell, ring),
              lower = gauss_integral<kCount - 1>(formula, cell, ring);
-  const double difference = 4.0 * std::abs(rule.integral - lower.integral);
-  const double least = radii >= kLeastRadii ? 0.0 : area(ring);
-  return {.integral = rule.integral, .error = std::max(difference, least) + rule.rounding, .rounding = rule.rounding};
+  Integral found{.integral = rule.integral, .rounding = rule.rounding};
+  if (radii >= kLeastRadii) {
+    found.error = 4.0 * std::abs(rule.integral - lower.integral) + rule.rounding;
+  } else {
+    const double size = area(ring), most = bound_.on(ring);
+    const double mean = size > 0.0 ? std::clamp(rule.integral / size, 0.0, most) : 0.0;
+    found.bound = std::max(mean, most - mean) * kSlack;
+    found.integral = mean * size;
+    found.error = found.bound * size + rule.rounding;
+  }
+  return found;
 }
 
 // Four points where they suffice for a cell of this size, else six.
@@ -278,7 +288,9 @@ void Pair::add_smooth(Cell cell, std::shared_ptr<const Formula> formula, double 
                     .integral = found.integral,
                     .error = found.error,
                     .next = next_of(found),
-                    .stage = limits_.stage});
+                    .stage = limits_.stage,
+                    .bound = found.bound,
+                    .near = nullptr});
 }
 
 // From every point, F differs from its value at the centre by at most the slope times the distance: visibility in a
@@ -310,9 +322,9 @@ void Pair::add_event(Cell cell, std::size_t depth, Candidates candidates, const 
   const Cell at_centre{{centre}, {}};
   Candidates of_centre = candidates;
   (void)view(at_centre, depth + 1, of_centre);  // at a single point every sign is known
-  const Formula formula(sight_, view_.parts(), view_.has_horizon());
-  const Integral found = certifies() ? enclose_event(formula, cell, centre, candidates, triples)
-                                     : integrate_event(formula, cell, centre, candidates, triples);
+  auto formula = std::make_shared<const Formula>(sight_, view_.parts(), view_.has_horizon());
+  const Integral found = certifies() ? enclose_event(*formula, cell, centre, candidates, triples)
+                                     : integrate_event(*formula, cell, centre, candidates, triples);
   shares.push_back({.cell = std::move(cell),
                     .candidates = std::move(candidates),
                     .formula = nullptr,
@@ -322,7 +334,9 @@ void Pair::add_event(Cell cell, std::size_t depth, Candidates candidates, const 
                     .error = found.error,
                     .next = certifies() ? Share::Next::kCut : next_of(found),
                     .stage = limits_.stage,
-                    .is_event = true});
+                    .is_event = true,
+                    .bound = found.bound,
+                    .near = found.is_near ? std::move(formula) : nullptr});
 }
 
 Pair::Integral Pair::integrate_event(const Formula& formula, const Cell& cell, const Point& centre,
@@ -331,8 +345,12 @@ Pair::Integral Pair::integrate_event(const Formula& formula, const Cell& cell, c
   if (const double bound = triples.empty() ? HUGE_VAL : event_bound(sight_.points, cell, centre.at, triples);
       bound < 1.0) {
     Integral found = integrate(formula, cell);
-    found.error += bound * size;
     found.more_points = false;
+    if (found.bound == 0.0) {
+      found.error += bound * size;
+      found.bound = bound;
+      found.is_near = true;
+    }
     return found;
   }
   const auto [found, rounding] = value_at(formula, centre);
@@ -340,7 +358,7 @@ Pair::Integral Pair::integrate_event(const Formula& formula, const Cell& cell, c
   const double radius = radius_about(cell, centre.at);
   const double bound =
       std::min(slope_bound(candidates, centre.at, radius) * radius + rounding, std::max(value, most - value));
-  return {.integral = value * size, .error = bound * size};
+  return {.integral = value * size, .error = bound * size, .bound = bound};
 }
 
 // The narrowest of what is known: the largest F; the centre's formula with event_bound; its value with the slope.
@@ -378,6 +396,7 @@ bool Pair::improve_whole(Share& share) {
   share.integral = found.integral;
   share.error = found.error;
   share.next = next_of(found);
+  share.bound = found.bound;
   return true;
 }
 

@@ -35,6 +35,10 @@ struct Share {
   std::size_t stage = 0;  // whose limits it is within
   bool is_event = false;  // without a formula, or with a bound of its event
   bool is_dark = false;   // all that is known are bounds of the point factor
+  // If positive: at every point of the cell, the point factor lies within this of `near` or, if that is null, of the
+  // mean. Its integral is in the error.
+  double bound = 0.0;
+  std::shared_ptr<const Formula> near;
 
   // For a share that will not be improved.
   void keep_numbers_only() {
@@ -43,6 +47,8 @@ struct Share {
     way = {};
     formula = nullptr;
     cut = nullptr;
+    bound = 0.0;
+    near = nullptr;
   }
 };
 
@@ -65,6 +71,9 @@ class Pair {
        PairMemory& memory, std::size_t id);
 
   [[nodiscard]] std::size_t point_count() const { return sight_.points.point_count(); }
+  [[nodiscard]] const Sight& sight() const { return sight_; }
+  [[nodiscard]] FaceId receiver_face() const { return receiver_faces_.front(); }
+  [[nodiscard]] const ExactSource* whole() const { return whole_.get(); }
   // An estimate of how many lines cut the receiver (CellView::count_events).
   [[nodiscard]] std::size_t events();
 
@@ -109,6 +118,8 @@ class Pair {
     double integral = 0.0, error = 0.0;
     double rounding = 0.0;     // in the error
     bool more_points = false;  // would lessen it
+    double bound = 0.0;        // Share::bound,
+    bool is_near = false;      // of the formula
   };
   [[nodiscard]] Share::Next next_of(const Integral& found) const;
   [[nodiscard]] Integral integrate(const Formula& formula, const Cell& cell) const;

@@ -226,7 +226,7 @@ kernel::Disc enclosed_area_of(const std::vector<Part>& parts, const Units& units
 double error_of_shares(const std::vector<Part>& parts, const Units& units) {
   double radii = 0.0, sum = 0.0;
   for (const Part& part : parts) {
-    const kernel::Disc area = enclosed_area(part, units);
+    const kernel::Disc area = part.weight * enclosed_area(part, units);
     radii += area.radius;
     sum += area.centre;
   }

@@ -25,7 +25,8 @@ namespace exactff::view_factors {
 // The same, enclosed.
 [[nodiscard]] kernel::Disc enclosed_area_of(const std::vector<Part>& parts, const Units& units);
 
-// A mean over the parts changes by at most this times its range if their areas are as wrong as roundings make them.
+// A mean over the parts, with their weights, changes by at most this times its range if their areas are as wrong as
+// roundings make them.
 [[nodiscard]] double error_of_shares(const std::vector<Part>& parts, const Units& units);
 
 // Whether all faces of the patch are planar. At a point of another face, its other triangles hide nothing, and F_ij and

@@ -196,6 +196,24 @@ double Refinement::estimate() const {
   return sum;
 }
 
+Refinement::Apart Refinement::apart() const {
+  if (gave_up_) return {.unknown = {}, .known = narrowest_};
+  std::vector<const Waiting*> unknown;
+  Apart result;
+  for (const std::vector<Waiting>* shares : {&waiting_, &settled_}) {
+    for (const Waiting& w : *shares) {
+      if (w.share.bound > 0.0 && pairs_[w.pair]->whole() != nullptr) {
+        unknown.push_back(&w);
+      } else {
+        result.known = result.known + kernel::Disc{w.share.integral, w.share.error};
+      }
+    }
+  }
+  std::ranges::sort(unknown, {}, &Waiting::number);
+  for (const Waiting* w : unknown) result.unknown.push_back({pairs_[w->pair].get(), &w->share});
+  return result;
+}
+
 std::size_t Refinement::event_cells() const {
   const auto is_event = [](const Waiting& w) { return w.share.is_event; };
   return static_cast<std::size_t>(std::ranges::count_if(waiting_, is_event) +

@@ -45,6 +45,17 @@ class Refinement {
   [[nodiscard]] const kernel::Disc& enclosure() const { return narrowest_; }
   // Of the integral; in the enclosure but for roundings.
   [[nodiscard]] double estimate() const;
+  // The shares apart: those that have a bound at every point (Share::bound), so that points can tell more, and the
+  // integral of all others, as the enclosure. Neighbours follow one another, more often than not.
+  struct Unknown {
+    const Pair* pair;
+    const Share* share;
+  };
+  struct Apart {
+    std::vector<Unknown> unknown;
+    kernel::Disc known;
+  };
+  [[nodiscard]] Apart apart() const;
   [[nodiscard]] bool is_zero() const { return waiting_.empty() && settled_.empty() && !gave_up_; }
   [[nodiscard]] std::size_t cells() const { return cells_; }
   [[nodiscard]] std::uint64_t effort() const { return effort_; }  // as Pair::effort

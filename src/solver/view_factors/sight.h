@@ -67,7 +67,8 @@ struct Part {
   PanelId panel = 0;  // that it is a part of
   std::vector<Point> corners;
   bool is_piece = false;  // the whole panel
-  bool is_cut = false;    // a fragment of cut_at_contacts()
+  bool is_cut = false;    // a fragment of cut_at_contacts(), or a cell
+  double weight = 1.0;    // of its area, in means over several
 };
 
 // The faces that it is a part of: of a joined panel all of its sheet, which lie in its plane.

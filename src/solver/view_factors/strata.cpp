@@ -30,9 +30,10 @@ bool is_parallelogram(const Part& part) {
 }
 
 // Into tiles of about equal sides, none of them larger than `largest`.
-void cut_parallelogram(std::size_t part, const std::vector<Vec3>& ring, double largest, std::vector<Tile>& into) {
+void cut_parallelogram(std::size_t part, const std::vector<Vec3>& ring, double size, double largest,
+                       std::vector<Tile>& into) {
   const auto length = [&](std::size_t corner) { return kernel::length(kernel::difference(ring[corner], ring[0])); };
-  const double size = area(ring), tiles = std::ceil(size / largest * (1.0 - kAreaRoundings));
+  const double tiles = std::ceil(size / largest * (1.0 - kAreaRoundings));
   // Rounded along the shorter side, so that the other number, rounded up, adds few.
   const double ratio = length(1) / length(3);
   const auto rounded_root = [&](double square) { return std::clamp(std::round(std::sqrt(square)), 1.0, tiles); };
@@ -81,15 +82,18 @@ double Draws::unit() { return kernel::unit_fraction(bits()); }
 
 Strata strata_of(const std::vector<Part>& parts, std::size_t count) {
   Strata result;
-  const double largest = area_of(parts) / static_cast<double>(count);
+  double total = 0.0;
+  for (const Part& part : parts) total += part.weight * area(positions_of(part.corners));
+  const double largest = total / static_cast<double>(count);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const std::vector<Vec3> ring = positions_of(parts[p].corners);
-    if (is_parallelogram(parts[p]) && area(ring) > 0.0) {
-      cut_parallelogram(p, ring, largest, result.tiles);
+    const double whole = parts[p].weight * area(ring);
+    if (whole > 0.0 && is_parallelogram(parts[p])) {
+      cut_parallelogram(p, ring, whole, largest, result.tiles);
       continue;
     }
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
-      const double size = area({ring[0], ring[i], ring[i + 1]});
+      const double size = parts[p].weight * area({ring[0], ring[i], ring[i + 1]});
       if (size > 0.0) cut_triangle(p, i, size, largest, result.tiles);
     }
   }

@@ -1,4 +1,4 @@
-// Strata of a patch, of about the same area, and random points in them.
+// Strata of a patch, of about the same area, and random points in them. Areas count with the weights of their parts.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ struct Tile {
   std::uint32_t columns, rows;      // of the grid, on the sides from corner 0 to `second` and to `third`
   std::uint32_t column, row;
   Shape shape;
-  double area;
+  double area;  // times the part's weight
 };
 
 struct Stratum {

@@ -9,8 +9,9 @@
 // 3. Integrate F(x -> j) over each cell by Gauss' rules, with an error: an estimate (quadrature.h), or a bound where
 //    the factor is to be certified (certified_integral.h).
 // 4. Refine: halve the cell of the largest error until the sum of the errors is small enough (refinement.h).
-// 5. In a crowd of occluders, cells may cost more than the mean of point factors at random points (sampled_factor.h).
-//    So whenever the cells have cost twice as much as before, points are taken as well, as far as they cost no more.
+// 5. In a crowd of occluders, cells may cost more than random points. So whenever the cells have cost twice as much as
+//    before, points are taken as well, as far as they cost about the same: of the cells that are not known
+//    (sampled_cells.h), and of the whole patch (sampled_factor.h).
 // 6. Divide by A_i. A_i F_ij = A_j F_ji gives the factor of the other direction.
 //
 // Source: see exactff/view_factors.h.
@@ -30,13 +31,16 @@
 #include "view_factors/pairs.h"
 #include "view_factors/patch_parts.h"
 #include "view_factors/refinement.h"
+#include "view_factors/sampled_cells.h"
 #include "view_factors/sampled_factor.h"
 
 namespace exactff {
 namespace view_factors {
 namespace {
 
-constexpr double kMostDoublings = 2.0;  // of the cells' effort that are foreseen
+constexpr double kMostTimes = 4.0;          // the cells' effort, for looks at the patch
+constexpr std::size_t kPointsOfBudget = 4;  // for a cell of the limit, which costs more than these
+constexpr double kFarNarrower = 0.125;      // than what is known of the patch without looks
 constexpr std::uint64_t kAnyEffort = std::uint64_t{1} << 62;
 
 // Of a mean over the patch.
@@ -76,7 +80,7 @@ class PointSearch {
       : from_(from),
         to_(to),
         turned_(is_symmetric(from, to, options) && has_better_points(to, from)),
-        mean_(scene, turned_ ? to : from, turned_ ? from : to, options.budget,
+        mean_(scene, turned_ ? to : from, turned_ ? from : to, kPointsOfBudget * options.budget,
               std::max(1.0, turned_ ? to.unit_area / from.unit_area : from.unit_area / to.unit_area)) {}
 
   [[nodiscard]] const SampledMean& mean() const { return mean_; }
@@ -107,8 +111,8 @@ class PointSearch {
   SampledMean mean_;
 };
 
-// By cells and, where these are expected to cost more, by points. Both go on in their own way whatever the accuracy is,
-// and the narrower interval is the result. A smaller accuracy never yields a wider one: with it, cells and looks go on
+// By cells and, where these cost more, by points. All go on in their own way whatever the accuracy is, and the
+// narrowest interval is the result. A smaller accuracy never yields a wider one: with it, cells and looks go on
 // where a larger one stops, but for looks that cannot reach it; and if an entry that is made accurate by cells has left
 // them out, none of them is narrower (SampledMean::may_reach).
 class Search {
@@ -120,7 +124,9 @@ class Search {
         to_(to),
         options_(options),
         cells_(scene, seen, from, to, options, memory),
-        by_cells_(unknown_factor(from, to)) {}
+        points_at_cells_(scene, from, to, kPointsOfBudget * options.budget),
+        by_cells_(unknown_factor(from, to)),
+        at_cells_(by_cells_) {}
 
   ViewFactor find() {
     do {
@@ -145,29 +151,50 @@ class Search {
   bool go_on() {
     const bool cells_left = cells_.go_on();
     if (options_.certify || !options_.sample_crowds) return cells_left;
-    if (!points_) points_.emplace(scene_, from_, to_, options_);
-    const std::uint64_t effort = cells_left ? predicted_effort() : kAnyEffort;
-    if (cells_left && !points_->mean().may_reach(options_.accuracy, effort)) return true;
-    points_->look(effort, options_.accuracy);
-    if (!cells_left) points_->look_with_the_rest(counted(by_cells_), options_.accuracy);
-    return cells_left && !is_accurate(points_->factor());
+    narrowing_ = std::exchange(last_width_, counted(by_cells_)) / counted(by_cells_);
+    look_at_cells(cells_left);
+    if (!is_accurate(at_cells_)) look_at_patch(cells_left);
+    return cells_left && !is_accurate(at_cells_) && !(points_ && is_accurate(points_->factor()));
   }
 
-  // That the cells may take until they are as narrow as the next look is to be, if each further doubling of their
-  // effort narrows them as the last one did; as far as it is foreseen.
-  [[nodiscard]] std::uint64_t predicted_effort() {
-    const double width = counted(by_cells_), doubling = std::log2(std::exchange(last_width_, width) / width);
-    const double needed = std::log2(width / points_->mean().next_width());
-    const double doublings = doubling > 0.0 ? std::clamp(needed / doubling, 0.0, kMostDoublings) : kMostDoublings;
-    return static_cast<std::uint64_t>(std::exp2(doublings) * static_cast<double>(cells_.effort()));
+  void look_at_cells(bool cells_left) {
+    const auto is_enough = [&](const Disc& integral) {
+      take_interval(integral, from_, at_cells_);
+      return is_accurate(at_cells_);
+    };
+    points_at_cells_.look(cells_, cells_left ? cells_.effort() : kAnyEffort, is_enough);
+    if (!cells_left && !is_enough(points_at_cells_.enclosure())) points_at_cells_.look_with_the_rest(cells_);
+    (void)is_enough(points_at_cells_.enclosure());
+  }
+
+  // As long as looks at the cells do not need far fewer points.
+  void look_at_patch(bool cells_left) {
+    if (!points_) points_.emplace(scene_, from_, to_, options_);
+    const SampledMean& mean = points_->mean();
+    if (counted(by_cells_) < kFarNarrower * mean.first_width()) return;
+    const std::uint64_t effort = cells_left ? effort_for_patch() : kAnyEffort;
+    if (cells_left && !mean.may_reach(options_.accuracy, effort)) return;
+    points_->look(effort, options_.accuracy);
+    if (!cells_left) points_->look_with_the_rest(counted(at_cells_), options_.accuracy);
+  }
+
+  // If cells become as many times narrower with each doubling of their effort, looks at them need as many times fewer
+  // points. That is the better choice if points of the patch take more than this.
+  [[nodiscard]] std::uint64_t effort_for_patch() const {
+    const double times = narrowing_ > 1.0 ? narrowing_ / (narrowing_ - 1.0) : kMostTimes;
+    return static_cast<std::uint64_t>(std::min(times, kMostTimes) * static_cast<double>(cells_.effort()));
   }
 
   [[nodiscard]] ViewFactor result() const {
     ViewFactor result = by_cells_;
     if (cells_.is_zero()) {
       result = {.area_from = from_.area, .area_to = to_.area};
-    } else if (points_ && width_of(points_->factor()) < width_of(by_cells_)) {
+    } else if (points_ && width_of(points_->factor()) < std::min(width_of(by_cells_), width_of(at_cells_))) {
       result = points_->factor();
+    } else if (width_of(at_cells_) < width_of(by_cells_)) {
+      result = at_cells_;
+      result.way = Way::kPoints;
+      result.value = std::clamp(points_at_cells_.enclosure().centre / from_.unit_area, result.lower, result.upper);
     } else {
       result.claim = options_.certify ? Claim::kCertified : Claim::kEstimated;
       result.value = std::clamp(cells_.estimate() / from_.unit_area, result.lower, result.upper);
@@ -184,9 +211,11 @@ class Search {
   const PreparedPatch& to_;
   const ViewFactorOptions& options_;
   Refinement cells_;
+  SampledCells points_at_cells_;
   std::optional<PointSearch> points_;  // from the first pause on
-  ViewFactor by_cells_;                // its interval
+  ViewFactor by_cells_, at_cells_;     // their intervals
   double last_width_ = 1.0;            // of the cells at the pause before
+  double narrowing_ = 1.0;             // of the cells since then
 };
 
 }  // namespace

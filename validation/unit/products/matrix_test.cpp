@@ -477,10 +477,11 @@ TEST_F(MatrixFilesOfTheCommand, TellsWhyEntriesAreWider) {
   };
   EXPECT_EQ(command({"floor,tall_block", "--budget", "1", "--certify", "-o", file("m.csv")}), 0) << told;
   EXPECT_EQ(told.find("warning: 2 entries are wider than the accuracy 1e-06: 'light' to '"), 0U) << told;
-  EXPECT_NE(told.find(" (the limit of work for an entry, 1 cell and as many points, is reached; their bounds are as "
-                      "strong as their claims); give more by --budget, ask for less by --accuracy, divide patches by "
-                      "--divide, or take estimates instead of --certify\n"),
-            std::string::npos)
+  EXPECT_NE(
+      told.find(" (the limit of work for an entry, 1 cell and four points for each, is reached; their bounds are as "
+                "strong as their claims); give more by --budget, ask for less by --accuracy, divide patches by "
+                "--divide, or take estimates instead of --certify\n"),
+      std::string::npos)
       << told;
   for (const ViewFactor& f : read_csv(file("m.csv")).entries) EXPECT_EQ(f.limit, Limit::kBudget);
   EXPECT_EQ(command({"floor", "--accuracy", "0.1"}), 0);

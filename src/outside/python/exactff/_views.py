@@ -152,7 +152,7 @@ def _budget(budget: int) -> int:
 def _warn_of_width(wide: int, accuracy: float, budget: int) -> None:
     if wide:
         warn(f"{wide} view factor{'s are' if wide > 1 else ' is'} wider than the accuracy {accuracy:g} (the limit of work "
-             f"for an entry, {budget} cells and as many points, or roundings; intervals are as strong as their claims)")
+             f"for an entry, {budget} cells and four points for each, or roundings; intervals are as strong as their claims)")
 
 
 def view_factor(scene: Scene, a: str, b: str, accuracy: float = 1e-6, *, budget: int = 100_000,

@@ -1,0 +1,107 @@
+// Looks at a function of which only its ranges are known: means over convex parts, from random points.
+//
+// The parts are cut into strata. In each, two independent points are drawn. strata.h has the points, stratified_mean.h
+// the interval, which assumes nothing of the function but its range: so strata are split where this, times their area,
+// is the largest (split_strata.h). What a stratum has shown is the guess for the next look at its parts; in the first
+// look, what the one before has shown.
+//
+// Each look has points of its own, for an interval of a tenth of the width of the last one or, where the points were
+// not enough, of the same width again; how many are needed is predicted from the ranges and from the last look. Look k
+// has a share of 1 / (k (k + 1)) of the risk, so that all of them are right with a probability of 1 - risk: the
+// narrowest is the result, and it does no harm that the next look and the end depend on what has been seen.
+//
+// Rounding. The shares of the strata are as wrong as their areas, whose roundings are enclosed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "view_factors/patch_parts.h"
+#include "view_factors/split_strata.h"
+#include "view_factors/strata.h"
+#include "view_factors/stratified_mean.h"
+
+namespace exactff::view_factors {
+
+inline constexpr std::size_t kPointsOfFirstLook = 216;
+
+class SampledFunction {
+ public:
+  explicit SampledFunction(std::vector<Part> parts) : parts_(std::move(parts)) {}
+  virtual ~SampledFunction() = default;
+  SampledFunction(const SampledFunction&) = delete;
+  SampledFunction& operator=(const SampledFunction&) = delete;
+
+  [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
+  // It lies in [0, range] on the tile; at most 1.
+  [[nodiscard]] virtual double range(const Tile& tile) = 0;
+  // At a point of a part. Nothing where it is not known.
+  [[nodiscard]] virtual std::optional<double> at(const Point& point, std::size_t part) = 0;
+  // Of all points so far, as of Pair::effort.
+  [[nodiscard]] virtual std::uint64_t effort() const = 0;
+
+ private:
+  std::vector<Part> parts_;
+};
+
+// Of means of functions whose ranges have this mean: what the interval of a first look is hardly ever narrower than,
+// and the fewest points for one of this width.
+[[nodiscard]] double least_width(double range, std::size_t strata, double risk);
+[[nodiscard]] double points_for(double range, double width, double risk);
+// What looks are for: powers of ten. The largest one below this width.
+[[nodiscard]] double next_width(double width);
+
+class Looks {
+ public:
+  // Keeps a reference to the function. `before`: looks that were taken before, at the cost of the same risk. `first`:
+  // points of the first look, about; more if the parts are many.
+  Looks(SampledFunction& function, const Units& units, double risk, std::size_t before,
+        std::size_t first = kPointsOfFirstLook);
+
+  // Splits strata until the next look is expected to have this width. False if it would take more effort, or more
+  // points, than these, of all looks together.
+  [[nodiscard]] bool prepare(double width, std::uint64_t effort, std::size_t points);
+  // Splits strata as long as there are points for them. False if there are not even so many as for the strata.
+  [[nodiscard]] bool prepare_for_all(std::size_t points);
+  [[nodiscard]] double expected_width() const;
+  struct Mean {
+    double value = 0.5, error = 0.5;
+  };
+  Mean look();
+
+  [[nodiscard]] std::size_t count() const { return number_; }  // with those before
+  [[nodiscard]] std::size_t points() const { return points_; }
+  [[nodiscard]] std::size_t strata() const { return last_.strata; }                 // of the last look
+  [[nodiscard]] std::uint64_t effort_of_point() const { return effort_of_point_; }  // on average in the first look
+  [[nodiscard]] double area() const { return strata_.strata().area; }
+
+ private:
+  // Of means over the parts.
+  struct Last {
+    StratifiedMean least, most;  // what the function is, or may be where it is not known
+    std::size_t strata = 0;
+  };
+
+  [[nodiscard]] std::size_t points_of_next() const;
+  [[nodiscard]] std::size_t points_after_next() const { return points_ + points_of_next(); }
+  [[nodiscard]] std::uint64_t effort_after_next() const { return effort_of_point_ * points_after_next(); }
+  bool split_within(std::size_t points);
+  [[nodiscard]] double risk_of(std::size_t look) const;
+  [[nodiscard]] double expected_square(const StratifiedMean& last) const;
+  void add(std::size_t stratum, Last& look);
+
+  SampledFunction& function_;
+  const Units& units_;
+  double risk_;
+  double of_shares_;
+  SplitStrata strata_;
+  std::size_t number_, points_ = 0;  // so far
+  Last last_;
+  double last_value_ = 0.0;
+  std::uint64_t effort_of_point_ = 0;
+};
+
+}  // namespace exactff::view_factors
