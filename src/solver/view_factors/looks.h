@@ -3,7 +3,7 @@
 // The parts are cut into strata. In each, two independent points are drawn. strata.h has the points, stratified_mean.h
 // the interval, which assumes nothing of the function but its range: so strata are split where this, times their area,
 // is the largest (split_strata.h). What a stratum has shown is the guess for the next look at its parts; in the first
-// look, what the one before has shown.
+// look, what the stratum before has shown.
 //
 // Each look has points of its own, for an interval of a tenth of the width of the last one or, where the points were
 // not enough, of the same width again; how many are needed is predicted from the ranges and from the last look. Look k
@@ -51,7 +51,7 @@ class SampledFunction {
 // and the fewest points for one of this width.
 [[nodiscard]] double least_width(double range, std::size_t strata, double risk);
 [[nodiscard]] double points_for(double range, double width, double risk);
-// What looks are for: powers of ten. The largest one below this width.
+// The largest power of ten below this width: looks are for such widths.
 [[nodiscard]] double next_width(double width);
 
 class Looks {
@@ -60,6 +60,8 @@ class Looks {
   // points of the first look, about; more if the parts are many.
   Looks(SampledFunction& function, const Units& units, double risk, std::size_t before,
         std::size_t first = kPointsOfFirstLook);
+  Looks(const Looks&) = delete;
+  Looks& operator=(const Looks&) = delete;
 
   // Splits strata until the next look is expected to have this width. False if it would take more effort, or more
   // points, than these, of all looks together.

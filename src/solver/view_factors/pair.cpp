@@ -342,13 +342,14 @@ void Pair::add_event(Cell cell, std::size_t depth, Candidates candidates, const 
 Pair::Integral Pair::integrate_event(const Formula& formula, const Cell& cell, const Point& centre,
                                      const Candidates& candidates, const std::vector<CrossingTriple>& triples) const {
   const double size = size_of(cell);
-  if (const double bound = triples.empty() ? HUGE_VAL : event_bound(sight_.points, cell, centre.at, triples);
-      bound < 1.0) {
+  const double bound_near =
+      triples.empty() ? HUGE_VAL : kEventMargin * event_bound(sight_.points, cell, centre.at, triples);
+  if (bound_near < 1.0) {
     Integral found = integrate(formula, cell);
     found.more_points = false;
     if (found.bound == 0.0) {
-      found.error += bound * size;
-      found.bound = bound;
+      found.error += bound_near * size;
+      found.bound = bound_near;
       found.is_near = true;
     }
     return found;

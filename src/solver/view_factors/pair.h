@@ -41,14 +41,17 @@ struct Share {
   std::shared_ptr<const Formula> near;
 
   // For a share that will not be improved.
-  void keep_numbers_only() {
-    cell = {};
+  void keep_for_points() {
     candidates = {};
     way = {};
     formula = nullptr;
     cut = nullptr;
+    if (bound == 0.0) cell = {};
+  }
+  void keep_numbers_only() {
     bound = 0.0;
     near = nullptr;
+    keep_for_points();
   }
 };
 

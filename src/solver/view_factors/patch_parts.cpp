@@ -226,9 +226,9 @@ kernel::Disc enclosed_area_of(const std::vector<Part>& parts, const Units& units
 double error_of_shares(const std::vector<Part>& parts, const Units& units) {
   double radii = 0.0, sum = 0.0;
   for (const Part& part : parts) {
-    const kernel::Disc area = part.weight * enclosed_area(part, units);
-    radii += area.radius;
-    sum += area.centre;
+    const kernel::Disc exact = part.weight * enclosed_area(part, units);
+    radii += exact.radius + std::abs(part.weight * area(positions_of(part.corners)) - exact.centre);
+    sum += exact.centre;
   }
   return sum > radii ? 2.0 * radii / (sum - radii) : 1.0;
 }

@@ -21,6 +21,7 @@ constexpr double kInfinity = __builtin_inf();
 constexpr double kDifferenceError = 0x1p-50;
 constexpr double kOfFirstOrder = 4.0;
 constexpr double kOfTerm = 0x1p-49;
+constexpr double kMostAngle = std::numbers::pi - 0x1p-6;
 
 struct FourVec {
   Four x, y, z;
@@ -106,7 +107,7 @@ EXACTFF_INLINE FourSightings shared(const FourSegment& first, const FourSegment&
   const FourVec at = FourCrossing(first, second.plane).at, b = first.b();
   const Four far = length(at);
   const Four d = magnitude(dot(second.plane, at)) / (second.size * far) + second.turn() + kDifferenceError / far;
-  const Four tan_of_half = first.size / (length(first.a) * length(b) + dot(first.a, b));
+  const Four tan_of_half = (length(first.a) * length(b) - dot(first.a, b)) / first.size;
   const Four of_sum = d * (1.0 + 2.0 * tan_of_half);
   return {at, Four{}, where(of_sum >= 0.0, of_sum, four(kInfinity))};
 }
@@ -145,9 +146,11 @@ EXACTFF_CLONES void evaluate_four(std::span<const QuickPart> parts, const Vec3& 
     const Four of_part = kOfFirstOrder * (magnitude(angle) * edge.turn() + magnitude(cosine) * (from.error + to.error) +
                                           from.of_sum + to.of_sum) +
                          kOfTerm * magnitude(angle * cosine);
+    // Where a shared crossing is far from the edge, the angle may be a whole turn off.
+    const FourMask may_turn = where(from.of_sum + to.of_sum > 0.0, magnitude(angle), Four{}) > kMostAngle;
     const FourMask is_seen = edge.size > 0.0;
     sum += where(is_seen, part.sign * angle * cosine, Four{});
-    error += where(is_seen, of_part, four(kInfinity));
+    error += where(is_seen, where(may_turn, four(kInfinity), of_part), four(kInfinity));
   }
   const Four value = sum / (-2.0 * std::numbers::pi), rounding = error / (2.0 * std::numbers::pi);
   for (int i = 0; i < 4; ++i) values[i] = {value[i], rounding[i]};

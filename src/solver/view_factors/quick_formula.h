@@ -13,7 +13,8 @@
 // lies on the first of the two edges, between its ends, as Y does. Then the contour is wrong by the sides of a
 // triangle: from Y to P along the first edge, and along the second one from Y to the point of it that is nearest to P.
 // The third side, of length d, is missing. With z the angle from Y to P, the triangle's area is at most d tan(z / 2),
-// and z is at most the angle w of the first edge. So by Eq. (4), 2 pi F is wrong by at most d (1 + 2 tan(w / 2)).
+// and z is at most the angle w of the first edge. So by Eq. (4), 2 pi F is wrong by at most d (1 + 2 tan(w / 2)), to
+// first order in d.
 #pragma once
 
 #include <span>

@@ -19,6 +19,7 @@ constexpr double kShareOfNegligible = 0x1p-24;             // of the error that 
 constexpr double kShareOfQuadrature = 0.0625;              // the same, of a cell as large as the patch
 constexpr double kShareOfCell = 0x1p-12;                   // the same, of a certified cell as large as the patch
 constexpr double kCoarse = 0x1p-7;                         // of the smaller area: the error of a cell of step 1
+constexpr double kShareOfUnknown = 0x1p-24;                // of all errors: a smaller one matters to no point
 constexpr std::size_t kSharesOfARound = 64;                // one of so many is improved before the error is summed
 constexpr std::size_t kMostPoints = std::size_t{1} << 20;  // of all pairs of parts: some 200 MB
 
@@ -167,7 +168,7 @@ void Refinement::work_on(std::size_t id, const Call& call) {
 void Refinement::add(Share share, std::size_t pair) {
   ++made_;
   running_error_ += share.error;
-  if (share.error < least_error_) share.keep_numbers_only();
+  if (share.error < least_error_) pauses() ? share.keep_for_points() : share.keep_numbers_only();
   const bool waits = share.next == Share::Next::kCut || share.next == Share::Next::kMorePoints;
   std::vector<Waiting>& shares = waits ? waiting_ : settled_;
   shares.push_back({std::move(share), pair, made_});
@@ -191,7 +192,9 @@ double Refinement::estimate() const {
   if (gave_up_) return narrowest_.centre;
   double sum = 0.0;
   for (const std::vector<Waiting>* shares : {&waiting_, &settled_}) {
-    for (const Waiting& w : *shares) sum += pairs_[w.pair]->estimate(w.share);
+    for (const Waiting& w : *shares) {
+      sum += w.share.error < least_error_ ? w.share.integral : pairs_[w.pair]->estimate(w.share);
+    }
   }
   return sum;
 }
@@ -202,7 +205,8 @@ Refinement::Apart Refinement::apart() const {
   Apart result;
   for (const std::vector<Waiting>* shares : {&waiting_, &settled_}) {
     for (const Waiting& w : *shares) {
-      if (w.share.bound > 0.0 && pairs_[w.pair]->whole() != nullptr) {
+      const bool matters = w.share.error > kShareOfUnknown * running_error_;
+      if (matters && w.share.bound > 0.0 && pairs_[w.pair]->whole() != nullptr && area(w.share.cell) > 0.0) {
         unknown.push_back(&w);
       } else {
         result.known = result.known + kernel::Disc{w.share.integral, w.share.error};

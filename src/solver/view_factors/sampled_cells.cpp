@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "kernel/poll.h"
 #include "view_factors/factor_bound.h"
 #include "view_factors/formula.h"
 #include "view_factors/looks.h"
@@ -93,10 +94,14 @@ class SampledCells::FactorOfCells : public SampledFunction {
   void add(const Pair& pair, const Share& share) {
     std::unique_ptr<OfPair>& of = pairs_[&pair];
     if (of == nullptr) of = std::make_unique<OfPair>(pair);
-    const double size = area(share.cell);
-    cells_.push_back({of.get(), share.near.get(), size > 0.0 ? share.integral / size : 0.0, share.bound});
-    const Disc below = share.bound * enclosed_area(share.cell, pair.sight().receiver);
-    least_ = least_ + (Disc{share.integral, std::max(0.0, share.error - share.bound * size)} - below);
+    kernel::poll();
+    const double size = area(share.cell), mean = share.integral / size, bound = share.bound;
+    cells_.push_back({of.get(), share.near.get(), mean, bound});
+    const Disc exact_size = enclosed_area(share.cell, pair.sight().receiver);
+    const Disc near =
+        share.near != nullptr ? Disc{share.integral, std::max(0.0, share.error - bound * size)} : mean * exact_size;
+    const double rounded = std::min(bound, kRoundedPoints) * 2.0;  // of a value, and of what it is compared with
+    least_ = least_ + widened(near - bound * exact_size, rounded * magnitude(exact_size));
   }
 
   const ExactScene& scene_;
@@ -165,7 +170,8 @@ void SampledCells::look(const Refinement& cells, std::uint64_t effort,
   const double fewest = fewest_points(apart);
   const std::size_t points = points_left();
   if (!(fewest <= most) || points < kPointsOfFirstLook) return;
-  Round round(scene_, apart, looks_, static_cast<std::size_t>(kShareOfFirst * fewest));
+  const double first = looks_ == 0 ? 0.0 : kShareOfFirst * fewest;  // at first, what a point takes is a guess
+  Round round(scene_, apart, looks_, static_cast<std::size_t>(first));
   take_look(round);
   while (!is_enough(narrowest_) && round.prepare(next_radius(), effort, points)) take_look(round);
 }

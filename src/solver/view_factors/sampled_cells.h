@@ -30,8 +30,8 @@ class SampledCells {
   // Keeps references. `most`: points of all looks.
   SampledCells(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to, std::size_t most);
 
-  // Takes looks, each for a tenth of the width of what is known so far, until it is enough. An effort of less than this
-  // is spent (Pair::effort).
+  // Takes looks, each for a tenth of the width of what is known so far, until it is enough. They are expected to
+  // take no more than this effort (Pair::effort).
   void look(const Refinement& cells, std::uint64_t effort,
             const std::function<bool(const kernel::Disc& integral)>& is_enough);
   // Takes one of all points that are left, if it should be narrower.

@@ -32,7 +32,7 @@ class SampledMean {
   SampledMean(const SampledMean&) = delete;
   SampledMean& operator=(const SampledMean&) = delete;
 
-  // Before any look, as others count it: 0 <= F and what the largest F are at a few places.
+  // Of what is known before any look, as others count it: F lies between 0 and the bounds at a few places.
   [[nodiscard]] double first_width() const { return range_ * ratio_; }
   // Whether looks could reach this width by this effort (Pair::effort), as far as is known. If not, none ever does:
   // where one is narrower, it is widened, by as little as can be.

@@ -111,10 +111,10 @@ class PointSearch {
   SampledMean mean_;
 };
 
-// By cells and, where these cost more, by points. All go on in their own way whatever the accuracy is, and the
-// narrowest interval is the result. A smaller accuracy never yields a wider one: with it, cells and looks go on
-// where a larger one stops, but for looks that cannot reach it; and if an entry that is made accurate by cells has left
-// them out, none of them is narrower (SampledMean::may_reach).
+// By cells and, where these cost more, by points. Each goes on in its own way whatever the accuracy is, and the
+// narrowest interval is the result. A smaller accuracy never yields a wider one: with it, cells and looks go on where a
+// larger one stops, but for looks that cannot reach it; and if an entry that is made accurate by cells has left them
+// out, none of them is narrower (SampledMean::may_reach).
 class Search {
  public:
   Search(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from, const PreparedPatch& to,
@@ -171,11 +171,13 @@ class Search {
   void look_at_patch(bool cells_left) {
     if (!points_) points_.emplace(scene_, from_, to_, options_);
     const SampledMean& mean = points_->mean();
-    if (counted(by_cells_) < kFarNarrower * mean.first_width()) return;
-    const std::uint64_t effort = cells_left ? effort_for_patch() : kAnyEffort;
-    if (cells_left && !mean.may_reach(options_.accuracy, effort)) return;
-    points_->look(effort, options_.accuracy);
-    if (!cells_left) points_->look_with_the_rest(counted(at_cells_), options_.accuracy);
+    const bool is_due = counted(by_cells_) >= kFarNarrower * mean.first_width();
+    if (is_due) effort_for_patch_ = cells_left ? effort_for_patch() : kAnyEffort;
+    // At the end, looks that were left out because they could not be accurate.
+    if (cells_left && !(is_due && mean.may_reach(options_.accuracy, effort_for_patch_))) return;
+    if (effort_for_patch_ == 0) return;
+    points_->look(effort_for_patch_, options_.accuracy);
+    if (is_due && !cells_left) points_->look_with_the_rest(counted(at_cells_), options_.accuracy);
   }
 
   // If cells become as many times narrower with each doubling of their effort, looks at them need as many times fewer
@@ -212,10 +214,11 @@ class Search {
   const ViewFactorOptions& options_;
   Refinement cells_;
   SampledCells points_at_cells_;
-  std::optional<PointSearch> points_;  // from the first pause on
-  ViewFactor by_cells_, at_cells_;     // their intervals
-  double last_width_ = 1.0;            // of the cells at the pause before
-  double narrowing_ = 1.0;             // of the cells since then
+  std::optional<PointSearch> points_;   // from the first pause on
+  ViewFactor by_cells_, at_cells_;      // their intervals
+  double last_width_ = 1.0;             // of the cells at the pause before
+  double narrowing_ = 1.0;              // of the cells since then
+  std::uint64_t effort_for_patch_ = 0;  // that was allowed last
 };
 
 }  // namespace
