@@ -368,10 +368,10 @@ TEST(ViewFactor, ByPointsAtCellsIsNarrowerAndAsTrue) {
   for (const PlainScene& plain : {plates(1.0, 1.0), roof}) {
     const Scene scene = generate::build(with_slats(plain));
     const Selection from = named(scene, "below"), source = named(scene, "above");
-    const ViewFactor truth = view_factor(scene, from, source, {.accuracy = 1e-3});
+    const ViewFactor truth = view_factor(scene, from, source, {.accuracy = 4e-3});
     ASSERT_TRUE(truth.accurate);
     std::size_t by_points = 0;
-    for (const std::size_t budget : {200, 1000, 2000}) {
+    for (const std::size_t budget : {200, 1000}) {
       const ViewFactor f = view_factor(scene, from, source, {.accuracy = 1e-9, .budget = budget});
       EXPECT_LE(f.lower, truth.upper) << budget;
       EXPECT_GE(f.upper, truth.lower) << budget;
