@@ -45,7 +45,7 @@ Disc weighted_area_of(const std::vector<Part>& parts, const Units& units) {
 }  // namespace
 
 // By how much the point factor to the pair's source exceeds what it is at least, as far as the cell knows, as a share
-// of what that may be. With this as the weight, strata share what is not known, whatever the cells know.
+// of what that may be. Weighted by that, strata of the same size hold equal amounts of what is unknown.
 class SampledCells::FactorOfCells : public SampledFunction {
  public:
   FactorOfCells(const ExactScene& scene, const std::vector<Refinement::Unknown>& cells)

@@ -143,13 +143,11 @@ bool SampledMean::may_reach(double width, std::uint64_t effort) const {
   return points <= static_cast<double>(most_) && points * static_cast<double>(of_point) <= static_cast<double>(effort);
 }
 
-double SampledMean::next_width() const { return view_factors::next_width(width()); }
-
 // The first one tells what the others are predicted from.
 bool SampledMean::look(std::uint64_t effort) {
   if (looking_ == nullptr) {
     looking_ = std::make_unique<Looking>(scene_, from_, to_);
-  } else if (!looking_->looks.prepare(next_width() / ratio_, effort, most_)) {
+  } else if (!looking_->looks.prepare(next_width(width()) / ratio_, effort, most_)) {
     return false;
   }
   take_look();

@@ -37,8 +37,6 @@ class SampledMean {
   // Whether looks could reach this width by this effort (Pair::effort), as far as is known. If not, none ever does:
   // where one is narrower, it is widened, by as little as can be.
   [[nodiscard]] bool may_reach(double width, std::uint64_t effort) const;
-  // That the next look is for: a power of ten.
-  [[nodiscard]] double next_width() const;
   // Takes the next look if the effort of all looks is then expected to be at most this. False if not.
   bool look(std::uint64_t effort);
   // Takes a last one of all points that are left, if it should be narrower than `width`.

@@ -17,8 +17,6 @@
 #include "unit/solver/visit_cells.h"
 #include "view_factors/certified_integral.h"
 #include "view_factors/disc_formula.h"
-#include "view_factors/patch_parts.h"
-#include "view_factors/seen_parts.h"
 
 namespace exactff {
 namespace {

@@ -65,23 +65,21 @@ Worst worst_of(const PlainScene& scene) {
   return worst;
 }
 
-TEST(Formula, IsPreciseWhereANeighbourIsAlmostInTheReceiversPlane) {
-  for (const int exponent : {-10, -20, -30, -40, -50}) {
-    const Worst worst = worst_of(neighbour(std::ldexp(1.0, exponent)));
+// Of every scene, which depends on a small number.
+void expect_precise(PlainScene (*scene_of)(double), const std::vector<int>& exponents) {
+  for (const int exponent : exponents) {
+    const Worst worst = worst_of(scene_of(std::ldexp(1.0, exponent)));
     EXPECT_GT(worst.cells, 0U) << exponent;
     EXPECT_LE(worst.of_rounding, 1.0) << exponent;
     EXPECT_LE(worst.rounding, 1e-11) << exponent;
   }
 }
 
-TEST(Formula, IsPreciseWhereEdgesAlmostHideOneAnother) {
-  for (const int exponent : {-5, -10, -20, -30, -40}) {
-    const Worst worst = worst_of(plate(std::ldexp(1.0, exponent)));
-    EXPECT_GT(worst.cells, 0U) << exponent;
-    EXPECT_LE(worst.of_rounding, 1.0) << exponent;
-    EXPECT_LE(worst.rounding, 1e-11) << exponent;
-  }
+TEST(Formula, IsPreciseWhereANeighbourIsAlmostInTheReceiversPlane) {
+  expect_precise(neighbour, {-10, -20, -30, -40, -50});
 }
+
+TEST(Formula, IsPreciseWhereEdgesAlmostHideOneAnother) { expect_precise(plate, {-5, -10, -20, -30, -40}); }
 
 }  // namespace
 }  // namespace exactff::view_factors
