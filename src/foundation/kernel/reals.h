@@ -61,6 +61,7 @@ EXACTFF_INLINE Four where(const FourMask& condition, const Four& a, const Four& 
   return lanes::pick(condition, a, b);
 }
 
+EXACTFF_INLINE bool in_every_lane(bool condition) { return condition; }
 EXACTFF_INLINE bool in_some_lane(const FourMask& condition) { return lanes::lane_bits(condition) != 0; }
 EXACTFF_INLINE bool in_every_lane(const FourMask& condition) { return lanes::all_lanes(condition); }
 

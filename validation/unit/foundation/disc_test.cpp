@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -122,7 +123,7 @@ TEST_F(Discs, HoldTheArcTangentOfRoots) {
                 acb_atan(f, root.get(), kBits);
                 acb_div(f, f, root.get(), kBits);
               });
-  EXPECT_LE(std::abs(atan_of_root({0.0, 0.0}).centre - 1.0), atan_of_root({0.0, 0.0}).radius);
+  EXPECT_LE(std::abs(atan_of_root(Disc{0.0, 0.0}).centre - 1.0), atan_of_root(Disc{0.0, 0.0}).radius);
 }
 
 // Radii are attained: nowhere is a bound more than a few times too large.
@@ -133,24 +134,50 @@ TEST_F(Discs, AreNotMuchLargerThanNeeded) {
     EXPECT_LE(inverse(a).radius, (1.0 / least - 1.0 / m) * 1.0001 + 1e-14);
     EXPECT_LE(square_root(a).radius, (std::sqrt(m) - std::sqrt(least)) * 1.0001 + 1e-14);
     EXPECT_LE(square(a).radius, (2.0 * m + e) * e * 1.0001 + 1e-14);
-    EXPECT_LE(atan_of_root({m, 0.0}).radius, 0x1p-46);
+    EXPECT_LE(atan_of_root(Disc{m, 0.0}).radius, 0x1p-46);
     EXPECT_LE(atan_of_root(a).radius, 0.34 * e + 1e-14);
   }
 }
 
 TEST_F(Discs, FailWhereTheFunctionIsNotAnalytic) {
-  EXPECT_FALSE(is_finite(inverse({1.0, 1.0})));
-  EXPECT_FALSE(is_finite(inverse({-1.0, 2.0})));
-  EXPECT_FALSE(is_finite(square_root({1.0, 1.0})));
-  EXPECT_FALSE(is_finite(square_root({-1.0, 0.0})));
-  EXPECT_FALSE(is_finite(atan_of_root({0.0, 1.0})));
-  EXPECT_FALSE(is_finite(atan_of_root({-2.0, 0.0})));
-  const Disc failed = inverse({0.0, 0.0});
+  EXPECT_FALSE(is_finite(inverse(Disc{1.0, 1.0})));
+  EXPECT_FALSE(is_finite(inverse(Disc{-1.0, 2.0})));
+  EXPECT_FALSE(is_finite(square_root(Disc{1.0, 1.0})));
+  EXPECT_FALSE(is_finite(square_root(Disc{-1.0, 0.0})));
+  EXPECT_FALSE(is_finite(atan_of_root(Disc{0.0, 1.0})));
+  EXPECT_FALSE(is_finite(atan_of_root(Disc{-2.0, 0.0})));
+  const Disc failed = inverse(Disc{0.0, 0.0});
   for (const Disc& f : {failed + Disc{1.0, 0.0}, failed * Disc{0.0, 0.0}, inverse(failed), square_root(failed),
                         atan_of_root(failed), square(failed), 0.0 * failed}) {
     EXPECT_FALSE(is_finite(f));
   }
   EXPECT_FALSE(is_finite(Disc{0x1p1000, 0.0} * Disc{0x1p1000, 0.0}));
+}
+
+TEST_F(Discs, HaveTheSameBitsFourAtATime) {
+  using lanes::Four;
+  for (int i = 0; i < kTrials; ++i) {
+    const std::array<Disc, 4> a{disc(), disc(), disc(), disc()}, b{disc(), disc(), disc(), disc()};
+    const auto expect_same = [&](const auto& operation) {
+      const auto gathered = [](const std::array<Disc, 4>& d) -> BasicDisc<Four> {
+        return {Four{d[0].centre, d[1].centre, d[2].centre, d[3].centre},
+                Four{d[0].radius, d[1].radius, d[2].radius, d[3].radius}};
+      };
+      const BasicDisc<Four> found = operation(gathered(a), gathered(b));
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Disc one = operation(a[k], b[k]);
+        EXPECT_EQ(found.centre[k], one.centre);
+        EXPECT_EQ(found.radius[k], one.radius);
+      }
+    };
+    expect_same([](const auto& z, const auto& w) { return z + w; });
+    expect_same([](const auto& z, const auto& w) { return z - w; });
+    expect_same([](const auto& z, const auto& w) { return z * w; });
+    expect_same([](const auto& z, const auto&) { return inverse(z); });
+    expect_same([](const auto& z, const auto&) { return square(z); });
+    expect_same([](const auto& z, const auto&) { return square_root(z); });
+    expect_same([](const auto& z, const auto&) { return atan_of_root(z); });
+  }
 }
 
 TEST(GaussRules, IntegratePowersExactly) {
