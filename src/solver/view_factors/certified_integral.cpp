@@ -17,15 +17,8 @@ using kernel::kMostNodes;
 using kernel::disc::kUp;
 
 constexpr std::array<double, 6> kEllipses = {5.0, 3.75, 2.75, 2.125, 1.625, 1.375};  // rho
-constexpr int kRanges = 2;                                                           // of the real variable
 constexpr std::size_t kMostNodesOfPiece = 144;  // of a quadrilateral: beyond, two halves are cheaper
 constexpr double kFinalShare = 0.5;             // of an error that is called final
-
-// |F times the Jacobian| for one variable in a disc and the other one on a range.
-double bound_on(const DiscFormula& formula, Axis axis, const Disc& complex, const Disc& real) {
-  const Disc &s = axis == Axis::kS ? complex : real, &t = axis == Axis::kS ? real : complex;
-  return magnitude(formula.value(s, t) * formula.jacobian(s, t));
-}
 
 struct Rule {
   std::size_t nodes = 0;
@@ -45,14 +38,27 @@ std::optional<Rule> rule_for(const DiscFormula& formula, Axis axis, double toler
   return std::nullopt;
 }
 
+// Requires at most kMostNodesOfPiece nodes. Four at a time; the last one is repeated if there are fewer.
 Disc gauss_sum(const DiscFormula& formula, std::size_t nodes_s, std::size_t nodes_t) {
-  Disc sum;
-  for (const kernel::GaussNode& s : kernel::enclosed_gauss_rule(nodes_s)) {
-    Disc row;
-    for (const kernel::GaussNode& t : kernel::enclosed_gauss_rule(nodes_t)) {
-      row = row + t.weight * (formula.value(s.at, t.at) * formula.jacobian(s.at, t.at));
+  const auto& in_s = kernel::enclosed_gauss_rule(nodes_s);
+  const auto& in_t = kernel::enclosed_gauss_rule(nodes_t);
+  const std::size_t count = nodes_s * nodes_t;
+  std::array<Disc, kMostNodesOfPiece> integrands;
+  for (std::size_t first = 0; first < count; first += 4) {
+    FourDiscs s, t;
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      const std::size_t i = std::min(first + lane, count - 1);
+      s[lane] = in_s[i / nodes_t].at;
+      t[lane] = in_t[i % nodes_t].at;
     }
-    sum = sum + s.weight * row;
+    const FourDiscs found = formula.integrands(s, t);
+    std::copy_n(found.begin(), std::min<std::size_t>(4, count - first), integrands.begin() + first);
+  }
+  Disc sum;
+  for (std::size_t i = 0; i < nodes_s; ++i) {
+    Disc row;
+    for (std::size_t j = 0; j < nodes_t; ++j) row = row + in_t[j].weight * integrands[i * nodes_t + j];
+    sum = sum + in_s[i].weight * row;
   }
   return sum;
 }
@@ -74,14 +80,17 @@ Disc cover_of_half_ellipse(double rho) {
 
 double bound_on_ellipse(const DiscFormula& formula, Axis axis, double rho) {
   const auto [centre, radius] = cover_of_half_ellipse(rho);
+  FourDiscs complex, real;  // each half of the ellipse with each half of [0, 1]
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double side = i < 2 ? -1.0 : 1.0, range = i % 2 == 0 ? 0.25 : 0.75;
+    complex[i] = {0.5 + 0.5 * side * centre, 0.5 * radius * kUp};
+    real[i] = {range, 0.25};
+  }
   double largest = 0.0;
-  for (int range = 0; range < kRanges; ++range) {
-    const Disc real{(range + 0.5) / kRanges, 0.5 / kRanges};
-    for (const double side : {-1.0, 1.0}) {
-      const double bound = bound_on(formula, axis, {0.5 + 0.5 * side * centre, 0.5 * radius * kUp}, real);
-      if (!(bound < HUGE_VAL)) return HUGE_VAL;
-      largest = std::max(largest, bound);
-    }
+  for (const Disc& g : axis == Axis::kS ? formula.integrands(complex, real) : formula.integrands(real, complex)) {
+    const double bound = magnitude(g);
+    if (!(bound < HUGE_VAL)) return HUGE_VAL;
+    largest = std::max(largest, bound);
   }
   return largest;
 }

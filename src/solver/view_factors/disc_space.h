@@ -2,11 +2,12 @@
 #pragma once
 
 #include "kernel/disc.h"
-#include "view_factors/exact_space.h"
 
 namespace exactff::view_factors {
 
 using kernel::Disc;
+struct Plane;
+struct Point;
 
 struct DiscVec {
   Disc x, y, z;

@@ -265,6 +265,35 @@ TEST(DiscFormula, HoldsTheFormulaInBalls) {
   }
 }
 
+// Each point has branches of its own: a wide angle, an edge that is seen from its other end, a disc that fails.
+TEST(DiscFormula, HasTheSameBitsFourAtATime) {
+  using view_factors::FourDiscs;
+  generate::Random random(8);
+  int judged = 0, failed = 0;
+  const auto judge = [&](const Formula& formula, const Cell& cell) {
+    DiscFormula discs(formula, cell);
+    discs.take({0, 1, 2, 2});
+    for (int i = 0; i < 200; ++i) {
+      FourDiscs s, t;
+      for (kernel::Disc& d : s) d = {random.unit(), std::ldexp(random.unit(), 1 - i % 10)};
+      for (kernel::Disc& d : t) d = {random.unit(), 0.0};
+      const FourDiscs found = discs.integrands(s, t);
+      FourDiscs one;
+      for (std::size_t k = 0; k < 4; ++k) one[k] = discs.value(s[k], t[k]) * discs.jacobian(s[k], t[k]);
+      const bool succeeds = std::all_of(one.begin(), one.end(), [](const kernel::Disc& d) { return is_finite(d); });
+      ++(succeeds ? judged : failed);
+      for (std::size_t k = 0; k < 4; ++k) {
+        EXPECT_EQ(is_finite(found[k]), succeeds);
+        EXPECT_TRUE(!succeeds || (found[k].centre == one[k].centre && found[k].radius == one[k].radius));
+      }
+    }
+  };
+  visit_cells(generate::build(with_plate(squares(1.0, 1.0), 1.0, 0.5, 0.75)), "below", "above", judge);
+  visit_cells(generate::build(floor_and_wall()), "floor", "wall", judge);
+  EXPECT_GT(judged, 100);
+  EXPECT_GT(failed, 20);
+}
+
 // On the real axis inside the ellipse, beyond the cell, where the map's Jacobian is larger.
 TEST(DiscFormula, IsBoundedOnTheEllipse) {
   using view_factors::Axis;
