@@ -1,11 +1,13 @@
 #include "view_factors/looks.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <optional>
 
 #include "kernel/poll.h"
+#include "kernel/vec.h"
 #include "view_factors/near_planes.h"
+#include "view_factors/point_factors.h"
 
 namespace exactff::view_factors {
 namespace {
@@ -15,9 +17,12 @@ static_assert(kPointsOfFirstLook >= kPointsOfStratum * kFewestStrata);
 constexpr double kOfExpected = 0.95;     // of a width: what is expected is a little less
 constexpr double kNarrower = 0.1;        // than the look before
 constexpr double kLeastOfWidths = 0.75;  // of the width that is expected if the function is the same in every stratum
-constexpr double kDecay = 1.5;           // of the square of a mean: the exponent of the number of strata
+constexpr double kOffSquare = 0.65;      // of what a stratum adds to it, less when the stratum is split
 constexpr double kCaution = 1.7;         // so much more is expected than predicted
-constexpr double kFirstSquare = 2.0;     // what the first look expects, in squares of the range
+constexpr double kFirstSquare = 8.0;     // what the first look expects, in squares of r
+constexpr double kOfDraws = 0x1p-31;     // the mean of a guess is that at the middle of its tile, within less
+
+constexpr double kFarthestShare = 2.0 / 3.0;  // of a side, from the middle of a tile to its corners, at most
 
 constexpr std::size_t kPointsOfSplit = 2 * kPointsOfStratum;  // more after a split than before, at most
 
@@ -25,7 +30,7 @@ double share_of(double risk, std::size_t look) { return risk / static_cast<doubl
 
 // From one stratum; that from several is as many times smaller.
 double width_of_one(double range, double risk) {
-  return kLeastOfWidths * 2.0 * StratifiedMean().error(range, share_of(risk, 1));
+  return kLeastOfWidths * 2.0 * StratifiedMean().error(range / kDraws, share_of(risk, 1));
 }
 
 }  // namespace
@@ -49,20 +54,38 @@ Looks::Looks(SampledFunction& function, const Units& units, double risk, std::si
       units_(units),
       risk_(risk),
       of_shares_(error_of_shares(function.parts(), units)),
-      strata_(function.parts(), first / kPointsOfStratum, [this](const Tile& tile) { return function_.range(tile); }),
+      strata_(function.parts(), first / kPointsOfStratum,
+              [this](const Tile& tile, bool is_alone) { return function_.span(tile, is_alone); }),
+      planes_(function.parts()),
       number_(before) {}
 
 std::size_t Looks::points_of_next() const { return kPointsOfStratum * strata_.strata().strata.size(); }
 
 double Looks::risk_of(std::size_t look) const { return share_of(risk_, look); }
 
+double Looks::expected_error(double r, double square) const {
+  return StratifiedMean{.expected = square, .square = square}.error(r, risk_of(number_ + 1));
+}
+
+// To split a stratum for its square, rather than for its term: the terms are about equal, so they fall as their number
+// grows.
+bool Looks::prefers_square() const {
+  const double r = strata_.largest_term(), square = expected_square();
+  const double less = square - kCaution * kOffSquare * strata_.largest_square();
+  return expected_error(r, std::max(0.0, less)) <
+         expected_error(r * (1.0 - 1.0 / static_cast<double>(strata_.strata().strata.size())), square);
+}
+
 // False if all points might then be more, or the strata are too small.
 bool Looks::split_within(std::size_t points) {
-  return points_after_next() + kPointsOfSplit <= points && strata_.split();
+  kernel::poll();
+  if (points_after_next() + kPointsOfSplit > points) return false;
+  return prefers_square() ? strata_.split_largest_square() : strata_.split_largest_term();
 }
 
 bool Looks::prepare(double width, std::uint64_t effort, std::size_t points) {
-  if (!(width > 0.0)) return false;
+  // More points hardly make known what is not.
+  if (!(width > last_.most.value - last_.least.value)) return false;
   while (expected_width() > kOfExpected * width) {
     if (effort_after_next() > effort || !split_within(points)) return false;
   }
@@ -75,20 +98,17 @@ bool Looks::prepare_for_all(std::size_t points) {
   return points_after_next() <= points;
 }
 
-// Of the next look, from the ranges and the last look.
+// Of the next look, from what is proved of the function and from the last look.
 double Looks::expected_width() const {
-  const auto error = [&](const StratifiedMean& last) {
-    const double square = expected_square(last);
-    return StratifiedMean{.expected = square, .square = square}.error(strata_.largest(), risk_of(number_ + 1));
-  };
-  return std::min(1.0, last_.most.value + error(last_.most)) - std::max(0.0, last_.least.value - error(last_.least));
+  const double error = expected_error(strata_.largest_term(), expected_square());
+  return std::min(1.0, last_.most.value + error) - std::max(0.0, last_.least.value - error);
 }
 
 Looks::Mean Looks::look() {
   Last next;
   next.strata = strata_.strata().strata.size();
-  next.least.expected = expected_square(last_.least);
-  next.most.expected = expected_square(last_.most);
+  next.least.expected = next.most.expected = expected_square();
+  const double r = strata_.largest_term();
   for (std::size_t s = 0; s < next.strata; ++s) {
     kernel::poll();
     add(s, next);
@@ -97,37 +117,99 @@ Looks::Mean Looks::look() {
   last_ = next;
   ++number_;
   points_ += points_of_next();
-  if (is_first) effort_of_point_ = function_.effort() / points_;
-  const auto error = [&](const StratifiedMean& mean) { return mean.error(strata_.largest(), risk_of(number_)); };
-  const double below = error(last_.least), above = last_.most.value - last_.least.value + error(last_.most);
-  return {last_.least.value, std::max(below, above) + of_shares_ + kRoundedPoints};
+  if (is_first) effort_of_point_ = std::max(kLeastEffort, function_.effort() / points_);
+  const auto error = [&](const StratifiedMean& mean) { return mean.error(r, risk_of(number_)); };
+  const double lower = last_.least.value - error(last_.least), upper = last_.most.value + error(last_.most);
+  return {0.5 * (lower + upper), 0.5 * (upper - lower) + of_shares_ + kRoundedPoints + kOfDraws};
 }
 
-// Of the next look, from a mean of the last one.
-double Looks::expected_square(const StratifiedMean& last) const {
-  if (points_ == 0) return kFirstSquare * strata_.largest() * strata_.largest();
-  const double ratio = static_cast<double>(last_.strata) / static_cast<double>(strata_.strata().strata.size());
-  return kCaution * last.square * std::pow(ratio, kDecay);
+// Of the next look, from the last one.
+double Looks::expected_square() const {
+  if (points_ == 0) return kFirstSquare * strata_.largest_term() * strata_.largest_term();
+  return kCaution * strata_.sum_of_squares();
+}
+
+// A linear function on a tile, by shares of its sides.
+struct Looks::Guess {
+  double value = 0.0;  // at the middle
+  Place middle, slope;
+
+  [[nodiscard]] double at(const Place& place) const {
+    return value + slope.along * (place.along - middle.along) + slope.up * (place.up - middle.up);
+  }
+  // With a change of at most this on the tile.
+  void flatten(double most) {
+    const double change = (std::abs(slope.along) + std::abs(slope.up)) * kFarthestShare;
+    if (!(change < HUGE_VAL)) slope = {};
+    if (change > most) slope = {slope.along * most / change, slope.up * most / change};
+  }
+};
+
+Looks::Guess Looks::guess_on(const Tile& tile) const {
+  Guess guess{.value = last_number_, .middle = middle_of(tile), .slope = {}};
+  const Sides sides = sides_of(function_.parts()[tile.part], tile);
+  const std::optional<LocalPlanes::Plane> plane = planes_.about(tile.part, sides.at(guess.middle));
+  if (!plane || !std::isfinite(plane->value)) return guess;
+  guess.value = plane->value;
+  guess.slope = {kernel::dot(plane->gradient, sides.along), kernel::dot(plane->gradient, sides.up)};
+  return guess;
+}
+
+std::optional<double> Looks::number_at(const Tile& tile, const Place& place) {
+  const Point point = point_at(function_.parts()[tile.part], tile, place, units_);
+  const std::optional<double> number = function_.at(point, tile.part);
+  if (number) {
+    planes_.add(tile.part, point.at, *number);
+    last_number_ = *number;
+  }
+  return number;
 }
 
 void Looks::add(std::size_t stratum, Last& look) {
+  const double before = look.most.square;
+  strata_.is_by_middle(stratum) ? add_by_middle(stratum, look) : add_by_draws(stratum, look);
+  strata_.set_square(stratum, look.most.square - before);
+}
+
+// The guess is what the function is at the middle, and what has been seen nearby says how it changes from there. If it
+// is not known at the middle, the least that it may be adds nothing. Numbers are rounded, and clamped to what is
+// proved.
+void Looks::add_by_middle(std::size_t stratum, Last& look) {
   const Strata& strata = strata_.strata();
-  const double range = strata_.range(stratum);
-  const double guess = points_ == 0 ? std::min(last_value_, range) : strata_.guess(stratum);
-  std::array<double, kDraws> least{}, most{};
+  const Stratum& whole = strata.strata[stratum];
+  const Tile& tile = strata.tiles[whole.begin];
+  const double share = whole.area / strata.area;
+  const auto [range, change] = strata_.span(stratum);
+  const std::optional<double> at_middle = number_at(tile, middle_of(tile));
+  if (!at_middle) return look.most.add(range, range, range, share);
+  Guess guess = guess_on(tile);
+  guess.value = *at_middle;
+  guess.flatten((kOverChange - 1.0) * change);
+  Draws draws(number_, stratum, 0);
+  const Place place = draw_place(tile, draws);
+  const double lowest = *at_middle - change, highest = *at_middle + change;
+  const std::optional<double> number = number_at(tile, place);
+  look.least.add(std::clamp(number.value_or(lowest), lowest, highest), guess.at(place), guess.value, share);
+  look.most.add(std::clamp(number.value_or(highest), lowest, highest), guess.at(place), guess.value, share);
+}
+
+// Guesses lie within the range. Where a stratum has several tiles, they are the same on all of these.
+void Looks::add_by_draws(std::size_t stratum, Last& look) {
+  const Strata& strata = strata_.strata();
+  const Stratum& whole = strata.strata[stratum];
+  const double range = strata_.span(stratum).range, share = whole.area / strata.area / kDraws;
+  const bool is_single = whole.end == whole.begin + 1;
   for (std::size_t d = 0; d < kDraws; ++d) {
     Draws draws(number_, stratum, d);
-    const Tile& tile = draw_tile(strata, strata.strata[stratum], d, draws);
-    const Point point = point_in(function_.parts()[tile.part], tile, draws, units_);
-    const std::optional<double> value = function_.at(point, tile.part);
-    least[d] = value.value_or(0.0);
-    most[d] = value.value_or(range);
+    const Tile& tile = draw_tile(strata, whole, d, draws);
+    Guess guess = is_single ? guess_on(tile) : Guess{last_number_, {}, {}};
+    guess.value = std::clamp(guess.value, 0.0, range);
+    guess.flatten(std::min(guess.value, range - guess.value));
+    const Place place = draw_place(tile, draws);
+    const std::optional<double> number = number_at(tile, place);
+    look.least.add(std::clamp(number.value_or(0.0), 0.0, range), guess.at(place), guess.value, share);
+    look.most.add(std::clamp(number.value_or(range), 0.0, range), guess.at(place), guess.value, share);
   }
-  const double share = strata.strata[stratum].area / strata.area;
-  look.least.add(least[0], least[1], guess, share);
-  look.most.add(most[0], most[1], guess, share);
-  last_value_ = 0.5 * (least[0] + least[1]);
-  strata_.set_guess(stratum, last_value_);
 }
 
 }  // namespace exactff::view_factors

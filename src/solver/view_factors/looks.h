@@ -1,9 +1,11 @@
 // Looks at a function of which only its ranges are known: means over convex parts, from random points.
 //
-// The parts are cut into strata. In each, two independent points are drawn. strata.h has the points, stratified_mean.h
-// the interval, which assumes nothing of the function but its range: so strata are split where this, times their area,
-// is the largest (split_strata.h). What a stratum has shown is the guess for the next look at its parts; in the first
-// look, what the stratum before has shown.
+// The parts are cut into strata. In each, two independent points are drawn, or the function is asked at the middle and
+// at one random point. strata.h has the points, stratified_mean.h the interval, which assumes nothing of the function
+// but what is proved: its range and, where that tells more, how far it is at most from what it is at the middle. Strata
+// are split where these, times their area, are the largest (split_strata.h), or where numbers were far from their
+// guesses. Guesses are planes through what all points before have shown nearby (local_planes.h): where the function is
+// smooth, little is left for chance.
 //
 // Each look has points of its own, for an interval of a tenth of the width of the last one or, where the points were
 // not enough, of the same width again; how many are needed is predicted from the ranges and from the last look. Look k
@@ -19,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "view_factors/local_planes.h"
 #include "view_factors/patch_parts.h"
 #include "view_factors/split_strata.h"
 #include "view_factors/strata.h"
@@ -36,8 +39,9 @@ class SampledFunction {
   SampledFunction& operator=(const SampledFunction&) = delete;
 
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
-  // It lies in [0, range] on the tile; at most 1.
-  [[nodiscard]] virtual double range(const Tile& tile) = 0;
+  // What is proved of it on the tile; the range is at most 1. The change may be left out if the tile is not alone in
+  // its stratum.
+  [[nodiscard]] virtual Span span(const Tile& tile, bool is_alone) = 0;
   // At a point of a part. Nothing where it is not known.
   [[nodiscard]] virtual std::optional<double> at(const Point& point, std::size_t part) = 0;
   // Of all points so far, as of Pair::effort.
@@ -91,18 +95,26 @@ class Looks {
   [[nodiscard]] std::size_t points_after_next() const { return points_ + points_of_next(); }
   [[nodiscard]] std::uint64_t effort_after_next() const { return effort_of_point_ * points_after_next(); }
   bool split_within(std::size_t points);
+  [[nodiscard]] bool prefers_square() const;
+  [[nodiscard]] double expected_error(double r, double square) const;
   [[nodiscard]] double risk_of(std::size_t look) const;
-  [[nodiscard]] double expected_square(const StratifiedMean& last) const;
+  [[nodiscard]] double expected_square() const;
+  struct Guess;
+  [[nodiscard]] Guess guess_on(const Tile& tile) const;
   void add(std::size_t stratum, Last& look);
+  void add_by_middle(std::size_t stratum, Last& look);
+  void add_by_draws(std::size_t stratum, Last& look);
+  [[nodiscard]] std::optional<double> number_at(const Tile& tile, const Place& place);
 
   SampledFunction& function_;
   const Units& units_;
   double risk_;
   double of_shares_;
   SplitStrata strata_;
+  LocalPlanes planes_;
   std::size_t number_, points_ = 0;  // so far
   Last last_;
-  double last_value_ = 0.0;
+  double last_number_ = 0.0;
   std::uint64_t effort_of_point_ = 0;
 };
 

@@ -111,6 +111,7 @@ void Refinement::refine(const std::function<bool(const kernel::Disc&)>& is_enoug
 bool Refinement::go_on() {
   if (effort_ < pause_ || cost_ >= options_.budget) return false;
   pause_ *= 2;
+  if (!std::exchange(has_paused_, true)) order_waiting();
   return true;
 }
 
@@ -126,8 +127,21 @@ bool Refinement::start_next_stage() {
                                     [](const Waiting& w) { return w.share.next == Share::Next::kNothing; });
   std::move(waits, settled_.end(), std::back_inserter(waiting_));
   settled_.erase(waits, settled_.end());
-  std::ranges::make_heap(waiting_, is_less_urgent);
+  order_waiting();
   return true;
+}
+
+bool Refinement::suits_points(const Waiting& w) const {
+  return w.share.bound > 0.0 && pairs_[w.pair]->whole() != nullptr;
+}
+
+double Refinement::urgency(const Waiting& w) const {
+  return has_paused_ && suits_points(w) ? kOfPoints * w.share.error : w.share.error;
+}
+
+void Refinement::order_waiting() {
+  for (Waiting& w : waiting_) w.urgency = urgency(w);
+  std::ranges::make_heap(waiting_, is_less_urgent);
 }
 
 // A part of the shares, so that sums over all of them cost little. False if nothing can or need be done in this stage.
@@ -135,7 +149,7 @@ bool Refinement::improve_some() {
   const std::size_t most = 1 + (waiting_.size() + settled_.size()) / kSharesOfARound;
   std::size_t improved = 0;
   while (improved < most && !waiting_.empty() && may_work() && running_error_ > target_of_stage() &&
-         waiting_.front().share.error >= least_error_) {
+         waiting_.front().urgency >= least_urgency()) {
     improve_worst();
     ++improved;
   }
@@ -168,10 +182,12 @@ void Refinement::work_on(std::size_t id, const Call& call) {
 void Refinement::add(Share share, std::size_t pair) {
   ++made_;
   running_error_ += share.error;
-  if (share.error < least_error_) pauses() ? share.keep_for_points() : share.keep_numbers_only();
   const bool waits = share.next == Share::Next::kCut || share.next == Share::Next::kMorePoints;
   std::vector<Waiting>& shares = waits ? waiting_ : settled_;
   shares.push_back({std::move(share), pair, made_});
+  Waiting& added = shares.back();
+  added.urgency = urgency(added);
+  if (added.urgency < least_urgency()) pauses() ? added.share.keep_for_points() : added.share.keep_numbers_only();
   if (waits) std::ranges::push_heap(waiting_, is_less_urgent);
 }
 
@@ -193,7 +209,7 @@ double Refinement::estimate() const {
   double sum = 0.0;
   for (const std::vector<Waiting>* shares : {&waiting_, &settled_}) {
     for (const Waiting& w : *shares) {
-      sum += w.share.error < least_error_ ? w.share.integral : pairs_[w.pair]->estimate(w.share);
+      sum += w.urgency < least_urgency() ? w.share.integral : pairs_[w.pair]->estimate(w.share);
     }
   }
   return sum;
@@ -206,7 +222,7 @@ Refinement::Apart Refinement::apart() const {
   for (const std::vector<Waiting>* shares : {&waiting_, &settled_}) {
     for (const Waiting& w : *shares) {
       const bool matters = w.share.error > kShareOfUnknown * running_error_;
-      if (matters && w.share.bound > 0.0 && pairs_[w.pair]->whole() != nullptr && area(w.share.cell) > 0.0) {
+      if (matters && suits_points(w) && area(w.share.cell) > 0.0) {
         unknown.push_back(&w);
       } else {
         result.known = result.known + kernel::Disc{w.share.integral, w.share.error};

@@ -3,7 +3,9 @@
 // A share is a cell with its part of the integral and an error (pair.h).
 //
 // 1. Cut one part of each pair of parts that may see each other into a few cells, and integrate over each.
-// 2. Keep the shares that can be improved in a heap, that of the largest error on top.
+// 2. Keep the shares that can be improved in a heap, that of the largest error on top. Once points may be cheaper,
+// those
+//    that points can tell more of count less.
 // 3. Improve the top one, by a better rule or by its two halves, until the sum of all errors is small enough, the
 //    budget is used up, or no share can be improved.
 //
@@ -70,9 +72,10 @@ class Refinement {
     Share share;
     std::size_t pair;
     std::size_t number;  // ties: the older one first
+    double urgency = 0.0;
   };
   [[nodiscard]] static bool is_less_urgent(const Waiting& a, const Waiting& b) {
-    return a.share.error != b.share.error ? a.share.error < b.share.error : a.number > b.number;
+    return a.urgency != b.urgency ? a.urgency < b.urgency : a.number > b.number;
   }
 
   void look_at_pairs(const ExactScene& scene, const SeenParts& seen, PairMemory& memory);
@@ -91,13 +94,20 @@ class Refinement {
   template <class Call>
   void work_on(std::size_t id, const Call& call);
   void add(Share share, std::size_t pair);
+  [[nodiscard]] bool suits_points(const Waiting& w) const;
+  [[nodiscard]] double urgency(const Waiting& w) const;
+  // Shares that are less urgent are never improved. Urgencies only fall.
+  [[nodiscard]] double least_urgency() const { return (pauses() ? kOfPoints : 1.0) * least_error_; }
+  void order_waiting();
+
+  static constexpr double kOfPoints = 0.125;  // of the error of a share that points can tell more of
 
   const PreparedPatch& from_;
   const PreparedPatch& to_;
   ViewFactorOptions options_;
   std::uint64_t pause_;                       // the effort at the next one
   double smaller_area_;                       // of the two patches
-  double least_error_;                        // shares of less are never improved
+  double least_error_;                        // shares of less need not be improved
   std::vector<std::unique_ptr<Pair>> pairs_;  // null: sees nothing
   std::vector<Waiting> waiting_;              // a heap
   std::vector<Waiting> settled_;              // cannot be improved in this stage
@@ -107,6 +117,7 @@ class Refinement {
   std::size_t made_ = 0;  // shares
   std::size_t cells_ = 0, cost_ = 0;
   std::uint64_t effort_ = 0;
+  bool has_paused_ = false;
   bool gave_up_ = false;  // nothing but 0 <= F <= 1 is known
   kernel::Disc narrowest_;
 };

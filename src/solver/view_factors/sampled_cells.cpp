@@ -14,6 +14,8 @@
 #include "view_factors/looks.h"
 #include "view_factors/near_planes.h"
 #include "view_factors/point_factors.h"
+#include "view_factors/slope_bound.h"
+#include "view_factors/strata.h"
 
 namespace exactff::view_factors {
 namespace {
@@ -56,13 +58,15 @@ class SampledCells::FactorOfCells : public SampledFunction {
   // The integral of what it is at least.
   [[nodiscard]] const Disc& least() const { return least_; }
 
-  [[nodiscard]] double range(const Tile& tile) override {
+  [[nodiscard]] Span span(const Tile& tile, bool is_alone) override {
     const OfCell& cell = cells_[tile.part];
-    if (cell.near != nullptr) return 1.0;
+    if (cell.near != nullptr) return {};
     OfPair& of = *cell.pair;
     if (!of.unhidden) of.unhidden.emplace(of.pair.sight());
-    const double most = of.unhidden->on(corners_of(parts()[tile.part], tile, scene_.units));
-    return cell.share_of(most - cell.mean);
+    const double most = of.unhidden->on(corners_of(parts()[tile.part], tile));
+    Span span{.range = cell.share_of(most - cell.mean)};
+    if (is_alone) span.change = cell.change_of(largest_change(of, tile, span.range * cell.bound));
+    return span;
   }
   [[nodiscard]] std::optional<double> at(const Point& point, std::size_t part) override {
     const OfCell& cell = cells_[part];
@@ -80,8 +84,9 @@ class SampledCells::FactorOfCells : public SampledFunction {
   struct OfPair {
     explicit OfPair(const Pair& of) : pair(of) {}
     const Pair& pair;
-    std::optional<NearPlanes> near_planes;  // both made when asked for
+    std::optional<NearPlanes> near_planes;  // all made when asked for
     std::optional<UnhiddenBound> unhidden;
+    std::optional<SlopeBound> slope;
   };
   struct OfCell {
     OfPair* pair;
@@ -89,7 +94,18 @@ class SampledCells::FactorOfCells : public SampledFunction {
     double mean, bound;
 
     [[nodiscard]] double share_of(double excess) const { return std::clamp(0.5 * (excess + bound) / bound, 0.0, 1.0); }
+    [[nodiscard]] double change_of(double change) const { return 0.5 * change / bound; }
   };
+
+  // Of the point factor. Infinite if it would be more than `most`.
+  [[nodiscard]] double largest_change(OfPair& of, const Tile& tile, double most) {
+    if (!of.slope && pieces_ > SlopeBound::kMostPieces) return HUGE_VAL;
+    if (!of.slope) {
+      of.slope.emplace(of.pair.sight());
+      pieces_ += of.slope->pieces();
+    }
+    return of.slope->change_on(parts()[tile.part], tile, most) + 2.0 * kRoundedPoints;
+  }
 
   void add(const Pair& pair, const Share& share) {
     std::unique_ptr<OfPair>& of = pairs_[&pair];
@@ -107,6 +123,7 @@ class SampledCells::FactorOfCells : public SampledFunction {
   const ExactScene& scene_;
   std::map<const Pair*, std::unique_ptr<OfPair>> pairs_;
   std::vector<OfCell> cells_;  // by part
+  std::size_t pieces_ = 0;     // of all slopes
   PointFactors factors_;
   Disc least_;
 };

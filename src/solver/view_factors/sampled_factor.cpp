@@ -1,16 +1,15 @@
 #include "view_factors/sampled_factor.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
 #include "exactff/exact.h"
 #include "kernel/poll.h"
 #include "kernel/vec.h"
-#include "view_factors/factor_bound.h"
 #include "view_factors/looks.h"
 #include "view_factors/near_planes.h"
 #include "view_factors/patch_parts.h"
@@ -19,63 +18,33 @@
 namespace exactff::view_factors {
 namespace {
 
-// The largest F if nothing hides any of the source.
-class LargestFactors {
- public:
-  LargestFactors(const ExactScene& scene, const std::vector<Part>& from, const std::vector<Part>& to)
-      : units_(scene.units), from_(from), to_(to), bounds_(from.size()) {}
+constexpr double kLeastOfChanges = 1.0;  // as a range: less than half of what a term of two numbers is
 
-  // From every point of the tile.
-  double on(const Tile& tile) { return on(tile.part, corners_of(from_[tile.part], tile, units_)); }
-  // From every point of the convex hull of these points of a part.
-  double on(std::size_t part, std::span<const Vec3> corners) {
-    if (to_.size() > kMostParts) return 1.0;
-    if (bounds_[part].empty()) prepare(part);
-    double sum = 0.0;
-    for (const UnhiddenBound& bound : bounds_[part]) {
-      sum += bound.on(corners);
-      if (sum >= 1.0) return 1.0;
-    }
-    return std::min(1.0, sum * kSum);
-  }
-
- private:
-  static constexpr std::size_t kMostParts = 256;  // of more, F is only known to be at most 1
-  static constexpr double kSum = 1.0 + 0x1p-40;   // more than the roundings of the sum
-
-  void prepare(std::size_t part) {
-    const Plane receiver = plane_of(from_[part], units_);
-    for (const Part& source : to_) {
-      bounds_[part].emplace_back(positions_of(source.corners), plane_of(source, units_), receiver);
-    }
-  }
-
-  const Units& units_;
-  const std::vector<Part>&from_, &to_;
-  std::vector<std::vector<UnhiddenBound>> bounds_;  // by part; made when asked for
+struct Fragments {
+  std::vector<Part> parts;
+  std::vector<std::size_t> of;  // by fragment: the part
 };
 
-std::vector<Part> fragments_of(const ExactScene& scene, const std::vector<Part>& parts) {
-  std::vector<Part> fragments;
-  for (const Part& part : parts) {
+Fragments fragments_of(const ExactScene& scene, const std::vector<Part>& parts) {
+  Fragments result;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
     kernel::poll();
-    std::ranges::move(cut_at_contacts(scene, part), std::back_inserter(fragments));
+    std::ranges::move(cut_at_contacts(scene, parts[p]), std::back_inserter(result.parts));
+    result.of.resize(result.parts.size(), p);
   }
-  return fragments;
+  return result;
 }
 
 // F at points of a patch.
 class FactorOfPatch : public SampledFunction {
  public:
-  FactorOfPatch(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to)
-      : SampledFunction(fragments_of(scene, from.parts)),
-        scene_(scene),
-        source_(scene.scene, to.selection),
-        near_(parts().size()),
-        factors_(scene.scene),
-        largest_(scene, parts(), to.parts) {}
+  // Keeps a reference to the bounds.
+  FactorOfPatch(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to, PatchBounds& bounds)
+      : FactorOfPatch(scene, to, bounds, fragments_of(scene, from.parts)) {}
 
-  [[nodiscard]] double range(const Tile& tile) override { return largest_.on(tile); }
+  [[nodiscard]] Span span(const Tile& tile, bool is_alone) override {
+    return bounds_.on(part_of_[tile.part], parts()[tile.part], tile, is_alone);
+  }
   [[nodiscard]] std::optional<double> at(const Point& point, std::size_t part) override {
     std::optional<NearPlanes>& near = near_[part];
     if (!near) near.emplace(scene_, parts()[part]);
@@ -84,38 +53,29 @@ class FactorOfPatch : public SampledFunction {
   [[nodiscard]] std::uint64_t effort() const override { return factors_.effort(); }
 
  private:
+  FactorOfPatch(const ExactScene& scene, const PreparedPatch& to, PatchBounds& bounds, Fragments fragments)
+      : SampledFunction(std::move(fragments.parts)),
+        scene_(scene),
+        part_of_(std::move(fragments.of)),
+        source_(scene.scene, to.selection),
+        near_(parts().size()),
+        factors_(scene.scene),
+        bounds_(bounds) {}
+
   const ExactScene& scene_;
+  std::vector<std::size_t> part_of_;  // by fragment
   ExactSource source_;
   std::vector<std::optional<NearPlanes>> near_;  // made when asked for
   PointFactors factors_;
-  LargestFactors largest_;
+  PatchBounds& bounds_;
 };
-
-Vec3 middle_of(std::span<const Vec3> corners) {
-  Vec3 sum;
-  for (const Vec3& corner : corners) sum = {sum.x + corner.x, sum.y + corner.y, sum.z + corner.z};
-  return kernel::scaled(sum, 1.0 / static_cast<double>(corners.size()));
-}
-
-// Over a few strata, of the bounds at their middles: smaller strata have hardly smaller ones.
-double mean_of_bounds(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to) {
-  LargestFactors largest(scene, from.parts, to.parts);
-  const Strata strata = strata_of(from.parts, kFewestStrata);
-  double sum = 0.0;
-  for (const Stratum& stratum : strata.strata) {
-    const Tile& tile = strata.tiles[stratum.begin];
-    const Vec3 middle = middle_of(corners_of(from.parts[tile.part], tile, scene.units));
-    sum += stratum.area / strata.area * largest.on(tile.part, {&middle, 1});
-  }
-  return sum;
-}
 
 }  // namespace
 
 class SampledMean::Looking {
  public:
-  Looking(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to)
-      : function_(scene, from, to), looks(function_, scene.units, kRiskOfPatch, 0) {}
+  Looking(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to, PatchBounds& bounds)
+      : function_(scene, from, to, bounds), looks(function_, scene.units, kRiskOfPatch, 0) {}
 
  private:
   FactorOfPatch function_;
@@ -124,29 +84,47 @@ class SampledMean::Looking {
   Looks looks;
 };
 
-SampledMean::SampledMean(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to, std::size_t most,
-                         double ratio)
+SampledMean::SampledMean(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from,
+                         const PreparedPatch& to, std::size_t most, double ratio)
     : scene_(scene),
       from_(from),
       to_(to),
       most_(std::max(most, kPointsOfFirstLook)),
       ratio_(ratio),
-      range_(mean_of_bounds(scene, from, to)) {}
+      bounds_(scene, seen, from, to) {
+  const Strata strata = strata_of(from.parts, kFewestStrata);
+  for (const Stratum& stratum : strata.strata) {
+    const Tile& tile = strata.tiles[stratum.begin];
+    const Sides sides = sides_of(from.parts[tile.part], tile);
+    const Vec3 middle = sides.at(middle_of(tile));
+    Span span = bounds_.about(tile.part, middle);
+    span.change *= kernel::distance(middle, sides.origin);
+    samples_.push_back({stratum.area / strata.area, span});
+  }
+}
 SampledMean::~SampledMean() = default;
 
-double SampledMean::lower() const { return std::max(0.0, value_ - error_); }
-double SampledMean::upper() const { return std::min(1.0, value_ + error_); }
+// From the mean of the ranges or, where they are less, the changes within strata of the same size. Those that are split
+// where changes are large have a smaller mean, but not below the power mean of 2/3.
+double SampledMean::least_width(double strata) const {
+  double sum = 0.0;
+  for (const Sample& sample : samples_) {
+    const double change = sample.span.change * std::sqrt(static_cast<double>(samples_.size()) / strata);
+    sum += sample.share * std::pow(std::min(sample.span.range, kLeastOfChanges * change), 2.0 / 3.0);
+  }
+  return view_factors::least_width(std::pow(sum, 1.5), static_cast<std::size_t>(strata), kRiskOfPatch);
+}
 
 bool SampledMean::may_reach(double width, std::uint64_t effort) const {
-  const double points = points_for(range_, width / ratio_, kRiskOfPatch);
   const std::uint64_t of_point = looking_ ? looking_->looks.effort_of_point() : kLeastEffort;
-  return points <= static_cast<double>(most_) && points * static_cast<double>(of_point) <= static_cast<double>(effort);
+  const double points = std::min(static_cast<double>(most_), static_cast<double>(effort / of_point));
+  return points >= 2.0 && least_width(points / kDraws) * ratio_ <= width;
 }
 
 // The first one tells what the others are predicted from.
 bool SampledMean::look(std::uint64_t effort) {
   if (looking_ == nullptr) {
-    looking_ = std::make_unique<Looking>(scene_, from_, to_);
+    looking_ = std::make_unique<Looking>(scene_, from_, to_, bounds_);
   } else if (!looking_->looks.prepare(next_width(width()) / ratio_, effort, most_)) {
     return false;
   }
@@ -159,13 +137,18 @@ void SampledMean::look_with_the_rest(double width) {
   if (looks.prepare_for_all(most_) && looks.expected_width() * ratio_ < width) take_look();
 }
 
+// All looks hold together, so what they have in common does, too. It is widened within what the factor can be.
 void SampledMean::take_look() {
-  const auto [value, found] = looking_->looks.look();
-  const double least = least_width(range_, looking_->looks.strata(), kRiskOfPatch);
-  const double error = std::max({found, 0.5 * least, least - value});
-  if (!(error < error_)) return;
-  value_ = value;
-  error_ = error;
+  const auto [value, error] = looking_->looks.look();
+  const double lower = std::max(known_.lower, value - error), upper = std::min(known_.upper, value + error);
+  if (lower <= upper) known_ = {lower, upper};
+  const double strata = static_cast<double>(std::min(looking_->looks.strata(), most_ / kDraws));
+  const double width = std::max(known_.upper - known_.lower, least_width(strata));
+  const double largest = std::max(1.0 / ratio_, known_.upper);
+  lower_ = std::clamp(0.5 * (known_.lower + known_.upper - width), 0.0, std::max(0.0, largest - width));
+  upper_ = std::clamp(lower_ + width, known_.upper, 1.0);
+  lower_ = std::min(lower_, known_.lower);
+  value_ = std::clamp(value, lower_, upper_);
 }
 
 }  // namespace exactff::view_factors

@@ -1,16 +1,19 @@
 #include "view_factors/strata.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
+#include "kernel/numbers.h"
 #include "kernel/split_mix.h"
 #include "kernel/vec.h"
 
 namespace exactff::view_factors {
 namespace {
 
-constexpr int kWeightBits = 32;
-constexpr std::uint64_t kWholeTile = std::uint64_t{1} << kWeightBits;
+constexpr int kShareBits = 32;
+constexpr std::uint64_t kWholeSide = std::uint64_t{1} << kShareBits;
 
 std::uint64_t mix(std::uint64_t key) { return kernel::split_mix(0, key); }
 
@@ -57,20 +60,6 @@ void cut_triangle(std::size_t part, std::size_t second, double size, double larg
     }
     into.push_back({part, second, second + 1, m, m, u, m - 1 - u, Tile::Shape::kTriangle, 0.5 * parallelogram});
   }
-}
-
-// The point at s and t of the ways from the tile's corner 0 to `second` and to `third`, as fractions of `whole`.
-Point point_at(const Part& part, const Tile& tile, const Integer& s, const Integer& t, const Integer& whole,
-               const Units& units) {
-  const std::array<const Point*, 3> corners{&part.corners[0], &part.corners[tile.second], &part.corners[tile.third]};
-  const std::array<Integer, 3> weights{whole - s - t, s, t};
-  Homogeneous sum;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Integer factor = weights[i] * corners[(i + 1) % 3]->exact[3] * corners[(i + 2) % 3]->exact[3];
-    for (std::size_t k = 0; k < 3; ++k) sum[k] += factor * corners[i]->exact[k];
-    sum[3] += factor * corners[i]->exact[3];
-  }
-  return make_point(std::move(sum), units);
 }
 
 }  // namespace
@@ -120,26 +109,56 @@ const Tile& draw_tile(const Strata& strata, const Stratum& stratum, std::size_t 
   return strata.tiles[i];
 }
 
-Point point_in(const Part& part, const Tile& tile, Draws& draws, const Units& units) {
-  std::uint64_t across = draws.bits() >> (64 - kWeightBits), up = draws.bits() >> (64 - kWeightBits);
-  if (tile.shape == Tile::Shape::kTriangle && across + up > kWholeTile) {
-    across = kWholeTile - across;
-    up = kWholeTile - up;
-  }
-  const Integer s = Integer(tile.column * kWholeTile + across) * Integer(tile.rows);
-  const Integer t = Integer(tile.row * kWholeTile + up) * Integer(tile.columns);
-  return point_at(part, tile, s, t, (Integer(tile.columns) * Integer(tile.rows)) << kWeightBits, units);
+Place middle_of(const Tile& tile) {
+  const double share = tile.shape == Tile::Shape::kTriangle ? 1.0 / 3.0 : 0.5;
+  return {share, share};
 }
 
-std::vector<Vec3> corners_of(const Part& part, const Tile& tile, const Units& units) {
-  const Integer whole = Integer(tile.columns) * Integer(tile.rows);
-  const auto at = [&](std::uint32_t across, std::uint32_t up) {
-    return point_at(part, tile, Integer(tile.column + across) * Integer(tile.rows),
-                    Integer(tile.row + up) * Integer(tile.columns), whole, units)
-        .at;
+Place draw_place(const Tile& tile, Draws& draws) {
+  std::uint64_t along = draws.bits() >> (64 - kShareBits), up = draws.bits() >> (64 - kShareBits);
+  if (tile.shape == Tile::Shape::kTriangle && along + up > kWholeSide) {
+    along = kWholeSide - along;
+    up = kWholeSide - up;
+  }
+  return {std::ldexp(static_cast<double>(along), -kShareBits), std::ldexp(static_cast<double>(up), -kShareBits)};
+}
+
+Point point_at(const Part& part, const Tile& tile, const Place& place, const Units& units) {
+  const auto share = [](double x) { return static_cast<std::uint64_t>(std::ldexp(x, kShareBits)); };
+  const Integer whole = (Integer(tile.columns) * Integer(tile.rows)) << kShareBits;
+  const Integer s = Integer(tile.column * kWholeSide + share(place.along)) * Integer(tile.rows);
+  const Integer t = Integer(tile.row * kWholeSide + share(place.up)) * Integer(tile.columns);
+  const std::array<const Point*, 3> corners{&part.corners[0], &part.corners[tile.second], &part.corners[tile.third]};
+  const std::array<Integer, 3> weights{whole - s - t, s, t};
+  Homogeneous sum;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Integer factor = weights[i] * corners[(i + 1) % 3]->exact[3] * corners[(i + 2) % 3]->exact[3];
+    for (std::size_t k = 0; k < 3; ++k) sum[k] += factor * corners[i]->exact[k];
+    sum[3] += factor * corners[i]->exact[3];
+  }
+  const auto coordinate = [&](std::size_t k) { return kernel::nearest_double(sum[k], sum[3], -units.shift); };
+  const Vec3 at{coordinate(0), coordinate(1), coordinate(2)};
+  return {std::move(sum), at};
+}
+
+Vec3 Sides::at(const Place& place) const {
+  return kernel::along(kernel::along(origin, along, place.along), up, place.up);
+}
+
+Sides sides_of(const Part& part, const Tile& tile) {
+  const Vec3& from = part.corners[0].at;
+  const auto side = [&](std::size_t to, std::uint32_t count) {
+    return kernel::scaled(kernel::difference(part.corners[to].at, from), 1.0 / static_cast<double>(count));
   };
-  if (tile.shape == Tile::Shape::kTriangle) return {at(0, 0), at(1, 0), at(0, 1)};
-  return {at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
+  Sides sides{from, side(tile.second, tile.columns), side(tile.third, tile.rows)};
+  sides.origin = sides.at({static_cast<double>(tile.column), static_cast<double>(tile.row)});
+  return sides;
+}
+
+std::vector<Vec3> corners_of(const Part& part, const Tile& tile) {
+  const Sides sides = sides_of(part, tile);
+  if (tile.shape == Tile::Shape::kTriangle) return {sides.origin, sides.at({1, 0}), sides.at({0, 1})};
+  return {sides.origin, sides.at({1, 0}), sides.at({1, 1}), sides.at({0, 1})};
 }
 
 }  // namespace exactff::view_factors

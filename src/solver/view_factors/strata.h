@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernel/vec.h"
 #include "view_factors/patch_parts.h"
 
 namespace exactff::view_factors {
@@ -56,11 +57,27 @@ struct Strata {
 // the square of half the difference of the halves' means.
 [[nodiscard]] const Tile& draw_tile(const Strata& strata, const Stratum& stratum, std::size_t draw, Draws& draws);
 
-// Uniform in the tile.
-[[nodiscard]] Point point_in(const Part& part, const Tile& tile, Draws& draws, const Units& units);
+// A place in a tile: shares of its sides from its corner nearest the origin.
+struct Place {
+  double along = 0.0, up = 0.0;
+};
+// The mean of all places, within 2^-32.
+[[nodiscard]] Place middle_of(const Tile& tile);
 
-// Its corners, in the order of the part's, rounded once.
-[[nodiscard]] std::vector<Vec3> corners_of(const Part& part, const Tile& tile, const Units& units);
+// Uniform in the tile.
+[[nodiscard]] Place draw_place(const Tile& tile, Draws& draws);
+// Exactly there, with the shares rounded down to multiples of 2^-32.
+[[nodiscard]] Point point_at(const Part& part, const Tile& tile, const Place& place, const Units& units);
+
+// Within 2^-48 if no coordinate is larger than 1.
+struct Sides {
+  Vec3 origin, along, up;
+
+  [[nodiscard]] Vec3 at(const Place& place) const;
+};
+[[nodiscard]] Sides sides_of(const Part& part, const Tile& tile);
+// In the order of the part's.
+[[nodiscard]] std::vector<Vec3> corners_of(const Part& part, const Tile& tile);
 
 // Of a stratum.
 inline constexpr std::size_t kDraws = 2;

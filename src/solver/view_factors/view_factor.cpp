@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "exactff/view_factors.h"
@@ -40,7 +41,6 @@ namespace {
 
 constexpr double kMostTimes = 4.0;          // the cells' effort, for looks at the patch
 constexpr std::size_t kPointsOfBudget = 4;  // for a cell of the limit, which costs more than these
-constexpr double kFarNarrower = 0.125;      // than what is known of the patch without looks
 constexpr std::uint64_t kAnyEffort = std::uint64_t{1} << 62;
 
 // Of a mean over the patch.
@@ -75,12 +75,12 @@ bool has_better_points(const PreparedPatch& one, const PreparedPatch& other) {
 
 class PointSearch {
  public:
-  PointSearch(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to,
+  PointSearch(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from, const PreparedPatch& to,
               const ViewFactorOptions& options)
       : from_(from),
         to_(to),
         turned_(is_symmetric(from, to, options) && has_better_points(to, from)),
-        mean_(scene, turned_ ? to : from, turned_ ? from : to, kPointsOfBudget * options.budget,
+        mean_(scene, seen, turned_ ? to : from, turned_ ? from : to, kPointsOfBudget * options.budget,
               std::max(1.0, turned_ ? to.unit_area / from.unit_area : from.unit_area / to.unit_area)) {}
 
   [[nodiscard]] const SampledMean& mean() const { return mean_; }
@@ -120,6 +120,7 @@ class Search {
   Search(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from, const PreparedPatch& to,
          const ViewFactorOptions& options, PairMemory& memory)
       : scene_(scene),
+        seen_(seen),
         from_(from),
         to_(to),
         options_(options),
@@ -157,9 +158,13 @@ class Search {
     return cells_left && !is_accurate(at_cells_) && !(points_ && is_accurate(points_->factor()));
   }
 
+  // What all looks have in common.
   void look_at_cells(bool cells_left) {
     const auto is_enough = [&](const Disc& integral) {
-      take_interval(integral, from_, at_cells_);
+      ViewFactor found;
+      take_interval(integral, from_, found);
+      const double lower = std::max(found.lower, at_cells_.lower), upper = std::min(found.upper, at_cells_.upper);
+      if (lower <= upper) std::tie(at_cells_.lower, at_cells_.upper) = std::pair(lower, upper);
       return is_accurate(at_cells_);
     };
     points_at_cells_.look(cells_, cells_left ? cells_.effort() : kAnyEffort, is_enough);
@@ -167,17 +172,14 @@ class Search {
     (void)is_enough(points_at_cells_.enclosure());
   }
 
-  // As long as looks at the cells do not need far fewer points.
   void look_at_patch(bool cells_left) {
-    if (!points_) points_.emplace(scene_, from_, to_, options_);
+    if (!points_) points_.emplace(scene_, seen_, from_, to_, options_);
     const SampledMean& mean = points_->mean();
-    const bool is_due = counted(by_cells_) >= kFarNarrower * mean.first_width();
-    if (is_due) effort_for_patch_ = cells_left ? effort_for_patch() : kAnyEffort;
+    const std::uint64_t effort = cells_left ? effort_for_patch() : kAnyEffort;
     // At the end, looks that were left out because they could not be accurate.
-    if (cells_left && !(is_due && mean.may_reach(options_.accuracy, effort_for_patch_))) return;
-    if (effort_for_patch_ == 0) return;
-    points_->look(effort_for_patch_, options_.accuracy);
-    if (is_due && !cells_left) points_->look_with_the_rest(counted(at_cells_), options_.accuracy);
+    if (cells_left && !mean.may_reach(options_.accuracy, effort)) return;
+    points_->look(effort, options_.accuracy);
+    if (!cells_left) points_->look_with_the_rest(counted(at_cells_), options_.accuracy);
   }
 
   // If cells become as many times narrower with each doubling of their effort, looks at them need as many times fewer
@@ -209,16 +211,16 @@ class Search {
   }
 
   const ExactScene& scene_;
+  const SeenParts& seen_;
   const PreparedPatch& from_;
   const PreparedPatch& to_;
   const ViewFactorOptions& options_;
   Refinement cells_;
   SampledCells points_at_cells_;
-  std::optional<PointSearch> points_;   // from the first pause on
-  ViewFactor by_cells_, at_cells_;      // their intervals
-  double last_width_ = 1.0;             // of the cells at the pause before
-  double narrowing_ = 1.0;              // of the cells since then
-  std::uint64_t effort_for_patch_ = 0;  // that was allowed last
+  std::optional<PointSearch> points_;  // from the first pause on
+  ViewFactor by_cells_, at_cells_;     // their intervals
+  double last_width_ = 1.0;            // of the cells at the pause before
+  double narrowing_ = 1.0;             // of the cells since then
 };
 
 }  // namespace

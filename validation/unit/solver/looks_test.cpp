@@ -5,14 +5,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "exactff/scene.h"
 #include "generate/plain_scene.h"
+#include "kernel/vec.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/patch_parts.h"
 #include "view_factors/prepared_patch.h"
 #include "view_factors/sampled_factor.h"
+#include "view_factors/seen_parts.h"
+#include "view_factors/strata.h"
 
 namespace exactff::view_factors {
 namespace {
@@ -25,13 +30,13 @@ class Strip : public SampledFunction {
  public:
   Strip(std::vector<Part> parts, const Units& units, double from, double to)
       : SampledFunction(std::move(parts)), units_(units), from_(from), to_(to) {}
-  [[nodiscard]] double range(const Tile&) override { return 1.0; }
+  [[nodiscard]] Span span(const Tile&, bool) override { return {}; }
   [[nodiscard]] std::optional<double> at(const Point& point, std::size_t) override {
     ++points_;
     const double x = std::ldexp(point.at.x, static_cast<int>(units_.exponent + units_.shift));
     return x >= from_ && x < to_ ? 1.0 : 0.0;
   }
-  [[nodiscard]] std::uint64_t effort() const override { return 10 * points_; }
+  [[nodiscard]] std::uint64_t effort() const override { return 300 * points_; }
 
  private:
   const Units& units_;
@@ -88,9 +93,9 @@ TEST_F(LooksAtStrips, TakeNoMorePointsOrEffortThanTheyMay) {
   (void)looks.look();
   const std::size_t first = looks.points();
   EXPECT_GE(first, kPointsOfFirstLook);
-  EXPECT_EQ(looks.effort_of_point(), 10U);
+  EXPECT_EQ(looks.effort_of_point(), 300U);
   EXPECT_FALSE(looks.prepare(1e-6, kAnyEffort, 2000));
-  EXPECT_FALSE(looks.prepare(0.05, 10 * first + 100, 1 << 20));
+  EXPECT_FALSE(looks.prepare(0.05, 300 * first + 3000, 1 << 20));
   ASSERT_TRUE(looks.prepare_for_all(4000));
   (void)looks.look();
   EXPECT_LE(looks.points(), 4000U);
@@ -115,19 +120,83 @@ TEST_F(LooksAtStrips, AreWiderAfterOthers) {
   EXPECT_EQ(later.count(), 101U);
 }
 
-// No interval is narrower than the factor of an unhidden source asks for, however much the points agree.
-TEST(SampledMean, IsAsWideAsTheLargestFactorsSay) {
+// A quadratic function, of which less is left to chance the better it is known: with four times the points, much less
+// than a quarter of the error. Its bounds say so, or only its range.
+class Bowl : public SampledFunction {
+ public:
+  Bowl(std::vector<Part> parts, const Units& units, bool has_change)
+      : SampledFunction(std::move(parts)), units_(units), has_change_(has_change) {}
+  [[nodiscard]] Span span(const Tile& tile, bool) override {
+    Span span{.range = 0.5};
+    if (!has_change_) return span;
+    const std::vector<Vec3> corners = corners_of(parts()[tile.part], tile);
+    const Vec3 middle = sides_of(parts()[tile.part], tile).at(middle_of(tile));
+    span.change = 0.0;
+    for (const Vec3& corner : corners) {
+      span.change = std::max(span.change, scaled(0.5 * std::sqrt(2.0) * kernel::distance(corner, middle)));
+    }
+    return span;
+  }
+  [[nodiscard]] std::optional<double> at(const Point& point, std::size_t) override {
+    return 0.25 * (std::pow(scaled(point.at.x), 2.0) + std::pow(scaled(point.at.y), 2.0));
+  }
+  [[nodiscard]] std::uint64_t effort() const override { return 0; }
+
+ private:
+  [[nodiscard]] double scaled(double x) const {
+    return std::ldexp(x, static_cast<int>(units_.exponent + units_.shift));
+  }
+
+  const Units& units_;
+  bool has_change_;
+};
+
+TEST_F(LooksAtStrips, KnowSmoothFunctionsWell) {
+  std::vector<Part> square = parts(1.0, 1.0);
+  square.pop_back();
+  for (const bool has_change : {false, true}) {
+    Bowl bowl(square, exact_.units, has_change);
+    Looks looks(bowl, exact_.units, kRisk, 0);
+    std::vector<double> errors;
+    for (const std::size_t points : {0, 1000, 5000, 21000}) {
+      const bool is_prepared = points == 0 || looks.prepare_for_all(points);
+      ASSERT_TRUE(is_prepared);
+      const Looks::Mean found = looks.look();
+      EXPECT_LE(std::abs(found.value - 1.0 / 6.0), found.error) << has_change;
+      errors.push_back(found.error);
+    }
+    // r L alone, if the range is all that is known.
+    const double least = 0.25 * std::log(2e6) / static_cast<double>(looks.strata());
+    EXPECT_GT(errors.back(), has_change ? 0.0 : least);
+    EXPECT_LT(errors[3], (has_change ? 0.3 : 1.5) * least);
+    EXPECT_LT(errors[3], (has_change ? 0.2 : 0.3) * errors[2]);
+  }
+}
+
+// No interval is narrower than what is proved of the point factor asks for, however much the points agree.
+TEST(SampledMean, IsAsWideAsWhatIsProvedSays) {
   generate::PlainScene plain;
   plain.add_ring(plain.patch("below"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   plain.add_ring(plain.patch("above"), {{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}});
   const Scene scene = generate::build(plain);
   const ExactScene exact(scene);
+  const SeenParts seen(exact);
   const PreparedPatch below(exact, scene.select("below"), false), above(exact, scene.select("above"), false);
-  SampledMean mean(exact, below, above, kPointsOfFirstLook, 1.0);
-  ASSERT_TRUE(mean.look(kAnyEffort));
-  const double least = least_width(mean.first_width(), kPointsOfFirstLook / 2, kRiskOfPatch);
-  EXPECT_GT(mean.upper() - mean.lower(), 1.25 * least);
-  EXPECT_LT(mean.upper() - mean.lower(), 3.0 * least);
+  SampledMean mean(exact, seen, below, above, 20000, 1.0);
+  constexpr double kTruth = 0.19982489569838746;
+  double last = 1.0;
+  for (int look = 0; look < 3; ++look) {
+    ASSERT_TRUE(mean.look(kAnyEffort));
+    const double width = mean.upper() - mean.lower();
+    EXPECT_LE(mean.lower(), kTruth);
+    EXPECT_GE(mean.upper(), kTruth);
+    EXPECT_LT(width, last);
+    last = width;
+  }
+  EXPECT_LT(last, 1e-3);
+  // Of 20,000 points in any number of looks.
+  EXPECT_FALSE(mean.may_reach(1e-7, kAnyEffort));
+  EXPECT_TRUE(mean.may_reach(last, kAnyEffort));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "exactff/scene.h"
 #include "generate/plain_scene.h"
 #include "kernel/vec.h"
+#include "unit/solver/add_numbers.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/patch_parts.h"
 #include "view_factors/stratified_mean.h"
@@ -30,7 +31,7 @@ class SplitStrataOf : public testing::TestWithParam<std::vector<Vec3>> {
   // Large near the first corner.
   static double f(const Vec3& p) { return 1.0 / (1.0 + 50.0 * kernel::dot(p, p)); }
   [[nodiscard]] double largest(const Tile& tile) const {
-    const std::vector<Vec3> corners = corners_of(parts_[tile.part], tile, exact_.units);
+    const std::vector<Vec3> corners = corners_of(parts_[tile.part], tile);
     double result = 0.0;
     for (const Vec3& corner : corners) {
       // Its distance from the origin is at least that of a corner, less the tile's diameter.
@@ -42,32 +43,16 @@ class SplitStrataOf : public testing::TestWithParam<std::vector<Vec3>> {
     return result;
   }
 
-  [[nodiscard]] Vec3 middle(const Tile& tile) const {
-    const std::vector<Vec3> corners = corners_of(parts_[tile.part], tile, exact_.units);
-    Vec3 sum;
-    for (const Vec3& corner : corners) sum = kernel::sum(sum, corner);
-    return kernel::scaled(sum, 1.0 / static_cast<double>(corners.size()));
-  }
-  // In the plane z = 0, counter-clockwise.
-  [[nodiscard]] bool holds(const Tile& tile, const Vec3& at) const {
-    const std::vector<Vec3> corners = corners_of(parts_[tile.part], tile, exact_.units);
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const Vec3 &a = corners[i], &b = corners[(i + 1) % corners.size()];
-      if ((b.x - a.x) * (at.y - a.y) - (b.y - a.y) * (at.x - a.x) < 0.0) return false;
-    }
-    return true;
-  }
-
   const Scene scene_ = build();
   const ExactScene exact_{scene_};
   const std::vector<Part> parts_ = parts_of(exact_, scene_.select("patch"));
-  const SplitStrata::RangeOf range_ = [this](const Tile& tile) { return largest(tile); };
+  const SplitStrata::SpanOf span_ = [this](const Tile& tile, bool) { return Span{.range = largest(tile)}; };
 };
 
 TEST_P(SplitStrataOf, ShareTheAreaAndHoldTheFunction) {
-  SplitStrata split(parts_, 36, range_);
+  SplitStrata split(parts_, 36, span_);
   const double area = split.strata().area;
-  for (int i = 0; i < 400; ++i) ASSERT_TRUE(split.split());
+  for (int i = 0; i < 400; ++i) ASSERT_TRUE(split.split_largest_term());
   double sum = 0.0;
   for (std::size_t s = 0; s < split.strata().strata.size(); ++s) {
     const Stratum& stratum = split.strata().strata[s];
@@ -76,7 +61,8 @@ TEST_P(SplitStrataOf, ShareTheAreaAndHoldTheFunction) {
     for (std::size_t n = 0; n < 4; ++n) {
       Draws draws(1, s, n);
       const Tile& tile = split.strata().tiles[stratum.begin];
-      EXPECT_LE(f(point_in(parts_[tile.part], tile, draws, exact_.units).at), split.range(s));
+      const Vec3 at = point_at(parts_[tile.part], tile, draw_place(tile, draws), exact_.units).at;
+      EXPECT_LE(f(at), split.span(s).range);
     }
   }
   EXPECT_NEAR(sum, area, 1e-12 * area);
@@ -84,15 +70,15 @@ TEST_P(SplitStrataOf, ShareTheAreaAndHoldTheFunction) {
 
 // The worst one has some four times the mean weight: strata of the same size would have a worse one.
 TEST_P(SplitStrataOf, AreSmallWhereTheFunctionMayBeLarge) {
-  SplitStrata split(parts_, 36, range_);
-  while (split.strata().strata.size() < 1000) ASSERT_TRUE(split.split());
+  SplitStrata split(parts_, 36, span_);
+  while (split.strata().strata.size() < 1000) ASSERT_TRUE(split.split_largest_term());
   double sum = 0.0, worst = 0.0;
   for (std::size_t s = 0; s < split.strata().strata.size(); ++s) {
-    const double weight = split.range(s) * split.strata().strata[s].area / split.strata().area;
+    const double weight = 0.5 * split.span(s).range * split.strata().strata[s].area / split.strata().area;
     sum += weight;
     worst = std::max(worst, weight);
   }
-  EXPECT_DOUBLE_EQ(split.largest(), worst);
+  EXPECT_DOUBLE_EQ(split.largest_term(), worst);
   EXPECT_LE(worst, 4.0 * sum / static_cast<double>(split.strata().strata.size()));
 }
 
@@ -105,15 +91,15 @@ TEST_P(SplitStrataOf, LeaveTheMeanAsItIs) {
       for (std::size_t d = 0; d < kDraws; ++d) {
         Draws draws(look, s, d);
         const Tile& tile = draw_tile(strata, strata.strata[s], d, draws);
-        values[d] = f(point_in(parts_[tile.part], tile, draws, exact_.units).at);
+        values[d] = f(point_at(parts_[tile.part], tile, draw_place(tile, draws), exact_.units).at);
       }
-      result.add(values[0], values[1], values[0], strata.strata[s].area / strata.area);
+      add_numbers(result, values[0], values[1], values[0], strata.strata[s].area / strata.area);
     }
     return result;
   };
   const double truth = mean(strata_of(parts_, 40000), 0).value;
-  SplitStrata split(parts_, 36, range_);
-  for (int i = 0; i < 100; ++i) ASSERT_TRUE(split.split());
+  SplitStrata split(parts_, 36, span_);
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(split.split_largest_term());
   double sum = 0.0, square = 0.0;
   constexpr std::size_t kLooks = 100;
   for (std::size_t look = 1; look <= kLooks; ++look) {
@@ -126,28 +112,42 @@ TEST_P(SplitStrataOf, LeaveTheMeanAsItIs) {
   EXPECT_LT(error, 1e-3 * truth);
 }
 
-// The first look sets their numbers as guesses; then each is that of the stratum that holds it, as far as its range
-// goes.
-TEST_P(SplitStrataOf, KeepTheGuessesOfWhatTheyWereSplitFrom) {
-  SplitStrata split(parts_, 36, range_);
-  const std::vector<Stratum> first = split.strata().strata;
-  std::vector<double> guesses;
-  for (std::size_t s = 0; s < first.size(); ++s) {
-    EXPECT_EQ(split.guess(s), 0.0);
-    const Tile tile = split.strata().tiles[first[s].begin];
-    guesses.push_back(f(middle(tile)));
-    split.set_guess(s, guesses.back());
-  }
-  std::vector<Tile> wholes;
-  for (const Stratum& stratum : first) wholes.push_back(split.strata().tiles[stratum.begin]);
-  while (split.strata().strata.size() < 500) ASSERT_TRUE(split.split());
+// Of strata with a bound of their change that is small enough, one random number is taken, and the term is less.
+TEST_P(SplitStrataOf, LeaveLessToChanceWhereTheFunctionHardlyChanges) {
+  const auto span = [](const Tile& tile, bool) { return Span{.range = 0.5, .change = tile.column == 0 ? 0.25 : 0.1}; };
+  const SplitStrata split(parts_, 36, span);
+  double largest = 0.0;
   for (std::size_t s = 0; s < split.strata().strata.size(); ++s) {
-    const Vec3 at = middle(split.strata().tiles[split.strata().strata[s].begin]);
-    const auto whole = std::ranges::find_if(wholes, [&](const Tile& tile) { return holds(tile, at); });
-    ASSERT_NE(whole, wholes.end());
-    const double guess = guesses[static_cast<std::size_t>(whole - wholes.begin())];
-    EXPECT_EQ(split.guess(s), std::min(guess, split.range(s))) << s;
+    const Stratum& stratum = split.strata().strata[s];
+    const bool changes = split.strata().tiles[stratum.begin].column == 0;
+    EXPECT_EQ(split.is_by_middle(s), !changes);
+    largest = std::max(largest, (changes ? 0.25 : kOverChange * 0.1) * stratum.area / split.strata().area);
   }
+  EXPECT_DOUBLE_EQ(split.largest_term(), largest);
+}
+
+// Those of the largest squares first. What is left of them is counted, and a look sets them anew.
+TEST_P(SplitStrataOf, AreSmallWhereNumbersWereFarFromTheirGuesses) {
+  SplitStrata split(parts_, 36, [](const Tile&, bool) { return Span{}; });
+  EXPECT_FALSE(split.split_largest_square());
+  const std::size_t first = split.strata().strata.size();
+  for (std::size_t s = 0; s < first; ++s) split.set_square(s, s == 7 ? 1.0 : 0.01);
+  const double sum = 1.0 + 0.01 * static_cast<double>(first - 1);
+  EXPECT_NEAR(split.sum_of_squares(), sum, 1e-12);
+  EXPECT_EQ(split.largest_square(), 1.0);
+  ASSERT_TRUE(split.split_largest_square());
+  EXPECT_LT(split.sum_of_squares(), sum - 0.5);
+  EXPECT_LT(split.largest_square(), 0.5);
+  EXPECT_GT(split.largest_square(), 0.01);
+  while (split.largest_square() > 0.01) ASSERT_TRUE(split.split_largest_square());
+  EXPECT_LT(split.strata().strata.size(), 2 * first);
+  const std::size_t last = split.strata().strata.size();
+  for (std::size_t s = 0; s < last; ++s) split.set_square(s, 2.0);
+  EXPECT_NEAR(split.sum_of_squares(), 2.0 * static_cast<double>(last), 1e-9);
+  for (int i = 0; i < 50; ++i) ASSERT_TRUE(split.split_largest_term());
+  double area = 0.0;
+  for (const Stratum& stratum : split.strata().strata) area += stratum.area;
+  EXPECT_NEAR(area, split.strata().area, 1e-12 * area);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, SplitStrataOf,
@@ -166,9 +166,9 @@ TEST(SplitStrata, OfManyFacesAreSharedOutAmongThem) {
   const Scene scene = generate::build(plain);
   const ExactScene exact(scene);
   const std::vector<Part> parts = parts_of(exact, scene.select("patch"));
-  SplitStrata split(parts, 40, [](const Tile&) { return 1.0; });
+  SplitStrata split(parts, 40, [](const Tile&, bool) { return Span{}; });
   EXPECT_LT(split.strata().strata.size(), 100U);
-  while (split.strata().strata.size() < 400) ASSERT_TRUE(split.split());
+  while (split.strata().strata.size() < 400) ASSERT_TRUE(split.split_largest_term());
   std::vector<int> of_part(parts.size());
   for (const Stratum& stratum : split.strata().strata) {
     EXPECT_EQ(stratum.end, stratum.begin + 1);

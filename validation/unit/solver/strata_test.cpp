@@ -13,6 +13,8 @@
 
 #include "exactff/scene.h"
 #include "generate/plain_scene.h"
+#include "kernel/vec.h"
+#include "unit/solver/add_numbers.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/patch_parts.h"
 #include "view_factors/stratified_mean.h"
@@ -54,7 +56,7 @@ Sample sample(const std::vector<Part>& parts, const Strata& strata, std::size_t 
               std::size_t draw, const Units& units) {
   Draws draws(look, stratum, draw);
   const Tile& tile = draw_tile(strata, strata.strata[stratum], draw, draws);
-  return {tile.part, point_in(parts[tile.part], tile, draws, units)};
+  return {tile.part, point_at(parts[tile.part], tile, draw_place(tile, draws), units)};
 }
 
 class StrataOf : public testing::TestWithParam<Patch> {
@@ -86,7 +88,7 @@ class StrataOf : public testing::TestWithParam<Patch> {
         return f(sample(parts_, strata, look, s, draw, exact_.units).point.at);
       };
       const double a = value(0);
-      mean.add(a, value(1), a, strata.strata[s].area / strata.area);
+      add_numbers(mean, a, value(1), a, strata.strata[s].area / strata.area);
     }
     return mean;
   }
@@ -153,6 +155,32 @@ TEST_P(StrataOf, MeansOfSquaresAreUnbiased) {
   EXPECT_LT(variance, 1.4 * spread);
 }
 
+// Their middle is the mean of the places in them, and sides and corners lie where points are drawn.
+TEST_P(StrataOf, MiddlesAreTheMeansOfPlaces) {
+  const Strata strata = strata_of(parts_, 36);
+  for (const Tile& tile : {strata.tiles.front(), strata.tiles.back()}) {
+    const Part& part = parts_[tile.part];
+    constexpr std::size_t kDrawn = 4000;
+    Place sum;
+    for (std::size_t n = 0; n < kDrawn; ++n) {
+      Draws draws(1, 0, n);
+      const Place place = draw_place(tile, draws);
+      sum = {sum.along + place.along, sum.up + place.up};
+      if (n >= 20) continue;
+      const Vec3 at = point_at(part, tile, place, exact_.units).at, close = sides_of(part, tile).at(place);
+      EXPECT_LE(kernel::distance(at, close), 0x1p-48);
+      double areas = 0.0;
+      const std::vector<Vec3> corners = corners_of(part, tile);
+      for (std::size_t i = 0; i < corners.size(); ++i)
+        areas += area({corners[i], corners[(i + 1) % corners.size()], at});
+      EXPECT_NEAR(areas, area(corners), 1e-9 * area(corners));
+    }
+    const Place middle = middle_of(tile);
+    EXPECT_NEAR(sum.along / kDrawn, middle.along, 0.025);
+    EXPECT_NEAR(sum.up / kDrawn, middle.up, 0.025);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Patches, StrataOf, testing::ValuesIn(patches()), [](const auto& test) {
   std::string name = test.param.name;
   std::ranges::replace(name, ' ', '_');
@@ -209,7 +237,7 @@ TEST(Strata, OfManyFacesShareTheirFacesWithoutBias) {
         Draws draws(look, s, d);
         values[d] = draw_tile(strata, strata.strata[s], d, draws).part % 2 == 1 ? 1.0 : 0.0;
       }
-      mean.add(values[0], values[1], values[0], strata.strata[s].area / strata.area);
+      add_numbers(mean, values[0], values[1], values[0], strata.strata[s].area / strata.area);
     }
     sum += mean.value;
     squares += mean.value * mean.value;
@@ -231,21 +259,21 @@ TEST(Strata, IntervalsHoldTheMeansOfStrips) {
   constexpr std::size_t kLooks = 100;
   for (const std::size_t count : {36, 100}) {
     const Strata strata = strata_of(parts, count);
-    const double range = std::ranges::max(strata.strata, {}, &Stratum::area).area / strata.area;
+    const double r = 0.5 * std::ranges::max(strata.strata, {}, &Stratum::area).area / strata.area;
     for (const double width : {1e-4, 1e-3, 0.01, 0.03, 0.1, 0.5}) {
       double largest = 0.0;
       for (std::size_t look = 0; look < kLooks; ++look) {
         const double from = 0.9 * (1.0 - width) * static_cast<double>(look) / kLooks;
-        StratifiedMean mean{.expected = range * range};
+        StratifiedMean mean{.expected = 4.0 * r * r};
         for (std::size_t s = 0; s < strata.strata.size(); ++s) {
           const auto value = [&](std::size_t draw) {
             const Point p = sample(parts, strata, look, s, draw, exact.units).point;
             const double x = std::ldexp(p.at.x, static_cast<int>(exact.units.exponent + exact.units.shift));
             return x >= from && x < from + width ? 1.0 : 0.0;
           };
-          mean.add(value(0), value(1), 0.0, strata.strata[s].area / strata.area);
+          add_numbers(mean, value(0), value(1), 0.0, strata.strata[s].area / strata.area);
         }
-        const double error = mean.error(range, 1e-6), off = std::abs(mean.value - width);
+        const double error = mean.error(r, 1e-6), off = std::abs(mean.value - width);
         EXPECT_LE(off, error) << count << ' ' << width << ' ' << look;
         largest = std::max(largest, off / error);
       }

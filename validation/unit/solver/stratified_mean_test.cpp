@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "unit/solver/add_numbers.h"
+
 namespace exactff::view_factors {
 namespace {
 
@@ -28,7 +30,7 @@ struct Spots {
     for (std::size_t s = 0; s < shares.size(); ++s) {
       const auto draw = [&] { return uniform(random) < shares[s] ? high[s] : 0.0; };
       const double a = draw();
-      result.add(a, draw(), guess, weight());
+      add_numbers(result, a, draw(), guess, weight());
     }
     return result;
   }
@@ -46,7 +48,7 @@ double missed(const Spots& of, double guess, double expected) {
   int missed = 0;
   for (int i = 0; i < kLooks; ++i) {
     const StratifiedMean mean = of.look(random, guess, expected);
-    missed += std::abs(mean.value - of.mean()) > mean.error(of.weight(), kRisk) ? 1 : 0;
+    missed += std::abs(mean.value - of.mean()) > mean.error(0.5 * of.weight(), kRisk) ? 1 : 0;
   }
   return static_cast<double>(missed) / kLooks;
 }
@@ -54,18 +56,18 @@ double missed(const Spots& of, double guess, double expected) {
 // None of 72 numbers meets anything.
 TEST(StratifiedMean, WhatNoNumberHasMetCounts) {
   StratifiedMean mean;
-  for (int s = 0; s < 36; ++s) mean.add(0.0, 0.0, 0.0, 1.0 / 36.0);
-  const double error = mean.error(1.0 / 36.0, 1e-6), least = std::log(2e6) / 72.0;
+  for (int s = 0; s < 36; ++s) add_numbers(mean, 0.0, 0.0, 0.0, 1.0 / 36.0);
+  const double error = mean.error(0.5 / 36.0, 1e-6), least = std::log(2e6) / 72.0;
   EXPECT_GT(error, least);
   EXPECT_LT(error, 1.02 * least);
   EXPECT_LT(std::pow(1.0 - error, 72.0), 1e-6)
       << "the probability that 72 draws miss a set of this share, evenly spread";
-  EXPECT_NEAR(mean.error(0.125 / 36.0, 1e-6), 0.125 * error, 1e-12) << "of a function that is an eighth as large";
+  EXPECT_NEAR(mean.error(0.0625 / 36.0, 1e-6), 0.125 * error, 1e-12) << "of a function that is an eighth as large";
 }
 
 TEST(StratifiedMean, IsKnownWhereNothingCanBeSeen) {
   StratifiedMean mean;
-  mean.add(0.0, 0.0, 0.0, 1.0);
+  add_numbers(mean, 0.0, 0.0, 0.0, 1.0);
   EXPECT_EQ(mean.error(0.0, 1e-6), 0.0);
 }
 
@@ -103,24 +105,47 @@ TEST(StratifiedMean, IntervalsAreNotMuchWiderThanTheyMustBe) {
 TEST(StratifiedMean, GuessesNarrowTheInterval) {
   const auto error = [](double guess) {
     StratifiedMean mean;
-    for (int s = 0; s < 100; ++s) mean.add(0.75, 0.75, guess, 0.01);
-    return mean.error(0.01, 1e-6);
+    for (int s = 0; s < 100; ++s) add_numbers(mean, 0.75, 0.75, guess, 0.01);
+    return mean.error(0.005, 1e-6);
   };
-  EXPECT_DOUBLE_EQ(error(0.75), StratifiedMean().error(0.01, 1e-6));
+  EXPECT_DOUBLE_EQ(error(0.75), StratifiedMean().error(0.005, 1e-6));
   EXPECT_GT(error(0.0), 2.0 * error(0.75));
   EXPECT_GT(error(0.5), error(0.75));
 }
 
+// Of a linear function, linear guesses leave nothing to chance; those that are off leave the interval true.
+TEST(StratifiedMean, GuessesMayDependOnThePlace) {
+  constexpr int kStrata = 50, kLooks = 400;
+  constexpr double kSlope = 0.4, kRisk = 0.2;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform;
+  for (const double guessed : {kSlope, 0.0, -kSlope}) {
+    int missed = 0;
+    for (int look = 0; look < kLooks; ++look) {
+      StratifiedMean mean{.expected = 1.0 / kStrata};
+      for (int s = 0; s < kStrata; ++s) {
+        const double place = uniform(random) - 0.5;
+        mean.add(0.5 + kSlope * place, 0.5 + guessed * place, 0.5, 1.0 / kStrata);
+      }
+      missed += std::abs(mean.value - 0.5) > mean.error(0.5 / kStrata, kRisk) ? 1 : 0;
+      const bool is_right = guessed == kSlope;
+      EXPECT_TRUE(!is_right || std::abs(mean.value - 0.5) < 1e-14);
+      EXPECT_EQ(mean.square < 1e-28, is_right);
+    }
+    EXPECT_LT(missed, kRisk * kLooks) << guessed;
+  }
+}
+
 // What is expected decides how wide the interval is, but only the right number makes it about the narrowest.
 TEST(StratifiedMean, IsNarrowestWhereTheSquareIsAsExpected) {
-  constexpr double kLargest = 0.01, kUnit = 0.25 * kLargest * kLargest;
+  constexpr double kTerm = 0.005, kUnit = kTerm * kTerm;
   for (const double square : {1.0, 10.0, 100.0, 1000.0}) {
     const auto error = [&](double expected) {
-      return StratifiedMean{.expected = expected * kUnit, .square = square * kUnit}.error(kLargest, 1e-6);
+      return StratifiedMean{.expected = expected * kUnit, .square = square * kUnit}.error(kTerm, 1e-6);
     };
     for (const double off : {0.01, 0.1, 10.0, 100.0})
       EXPECT_LT(error(square), error(off * square)) << square << ' ' << off;
-    EXPECT_LT(error(square), 0.5 * kLargest * (std::log(2e6) * 1.5 + std::sqrt(2.5 * std::log(2e6) * square)));
+    EXPECT_LT(error(square), kTerm * (std::log(2e6) * 1.5 + std::sqrt(2.5 * std::log(2e6) * square)));
   }
 }
 

@@ -1,0 +1,88 @@
+#include "view_factors/patch_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/poll.h"
+#include "view_factors/near_planes.h"
+#include "view_factors/patch_parts.h"
+
+namespace exactff::view_factors {
+namespace {
+
+constexpr std::size_t kMostSources = 256;  // of more parts, F is only known to be at most 1
+constexpr double kSum = 1.0 + 0x1p-40;     // more than the roundings of a sum
+
+}  // namespace
+
+PatchBounds::PatchBounds(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from,
+                         const PreparedPatch& to)
+    : scene_(scene), seen_(seen), from_(from), to_(to), parts_(from.parts.size()) {}
+
+Span PatchBounds::on(std::size_t part, const Part& fragment, const Tile& tile, bool with_change) {
+  const OfPart& bounds = of(part);
+  Span span{.range = range_on(bounds, corners_of(fragment, tile))};
+  if (!with_change) return span;
+  const double useful = span.range / kDraws;
+  span.change = sum_of(bounds, [&](const SlopeBound& slope) { return slope.change_on(fragment, tile, useful); });
+  span.change += 2.0 * kRoundedPoints;
+  return span;
+}
+
+Span PatchBounds::about(std::size_t part, const Vec3& point) {
+  const OfPart& bounds = of(part);
+  return {range_on(bounds, {&point, 1}),
+          sum_of(bounds, [&](const SlopeBound& slope) { return slope.about(point, 0.0); })};
+}
+
+PatchBounds::OfPart& PatchBounds::of(std::size_t part) {
+  std::optional<OfPart>& of = parts_[part];
+  if (of) return *of;
+  of.emplace();
+  const Part& receiver = from_.parts[part];
+  const Plane plane = plane_of(receiver, scene_.units);
+  if (to_.parts.size() <= kMostSources) {
+    for (const Part& source : to_.parts) {
+      of->unhidden.emplace_back(positions_of(source.corners), plane_of(source, scene_.units), plane);
+    }
+  }
+  if (!to_.surrounds) add_slopes(part, *of);
+  return *of;
+}
+
+void PatchBounds::add_slopes(std::size_t part, OfPart& of) {
+  const Part& receiver = from_.parts[part];
+  const std::span<const std::uint32_t> occluders = from_.seen.lists(seen_, from_.parts)[part].occluders;
+  for (const Part& source : to_.parts) {
+    if (pieces_ > SlopeBound::kMostPieces) return of.slopes.clear();
+    kernel::poll();
+    const std::optional<Sight> sight = sight_of(scene_, occluders, receiver, source, receiver.face);
+    if (!sight) continue;
+    of.slopes.emplace_back(*sight);
+    pieces_ += of.slopes.back().pieces();
+  }
+  of.has_slopes = true;
+}
+
+double PatchBounds::range_on(const OfPart& of, std::span<const Vec3> corners) const {
+  if (to_.parts.empty() || of.unhidden.empty()) return 1.0;
+  double sum = 0.0;
+  for (const UnhiddenBound& bound : of.unhidden) {
+    sum += bound.on(corners);
+    if (sum >= 1.0) return 1.0;
+  }
+  return std::min(1.0, sum * kSum);
+}
+
+template <class Slope>
+double PatchBounds::sum_of(const OfPart& of, const Slope& slope) {
+  if (!of.has_slopes) return HUGE_VAL;
+  double sum = 0.0;
+  for (const SlopeBound& bound : of.slopes) {
+    sum += slope(bound);
+    if (sum == HUGE_VAL) break;
+  }
+  return sum * kSum;
+}
+
+}  // namespace exactff::view_factors

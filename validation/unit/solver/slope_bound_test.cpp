@@ -1,0 +1,175 @@
+// How fast point factors change, judged by the exact solver.
+#include "view_factors/slope_bound.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactff/exact.h"
+#include "exactff/models.h"
+#include "generate/plain_scene.h"
+#include "generate/random.h"
+#include "kernel/vec.h"
+#include "support/random_scenes.h"
+#include "view_factors/exact_scene.h"
+#include "view_factors/patch_parts.h"
+#include "view_factors/seen_parts.h"
+
+namespace exactff::view_factors {
+namespace {
+
+using generate::PlainScene;
+using generate::Random;
+using validation::scaled_count;
+using validation::seed_of;
+
+// Of a source seen from points of a floor.
+class Seen {
+ public:
+  explicit Seen(const Scene& scene)
+      : scene_(scene),
+        exact_(scene),
+        receiver_(parts_of(exact_, scene.select("floor")).front()),
+        source_(scene, scene.select("source")),
+        sight_(sight_of(exact_, SeenParts(exact_).seen_from(receiver_).occluders, receiver_,
+                        parts_of(exact_, scene.select("source")).front(), receiver_.face)) {}
+
+  [[nodiscard]] bool sees() const { return sight_.has_value(); }
+  [[nodiscard]] const Part& receiver() const { return receiver_; }
+  [[nodiscard]] SlopeBound bound() const { return SlopeBound(*sight_); }
+  // All in the scene's unit.
+  [[nodiscard]] double slope(const Vec3& at, double radius) const {
+    const double unit = std::ldexp(1.0, static_cast<int>(exact_.units.exponent + exact_.units.shift));
+    return bound().about(kernel::scaled(at, 1.0 / unit), radius / unit) / unit;
+  }
+  [[nodiscard]] double factor(const Vec3& at) const {
+    const auto in_scene = [&](double x) {
+      return std::ldexp(x, static_cast<int>(exact_.units.exponent + exact_.units.shift));
+    };
+    const auto& n = sight_->receiver.rounded;
+    const Receiver x{.point = {in_scene(at.x), in_scene(at.y), in_scene(at.z)},
+                     .normal = {n[0], n[1], n[2]},
+                     .on = {receiver_.face},
+                     .id = {}};
+    return exact_form_factor(scene_, x, source_).value;
+  }
+
+ private:
+  const Scene& scene_;
+  ExactScene exact_;
+  Part receiver_;
+  ExactSource source_;
+  std::optional<Sight> sight_;
+};
+
+// Points of a small tile of the part, and its middle first.
+std::vector<Vec3> points_of_tile(const Part& part, Random& random, double size) {
+  const std::vector<Point>& corners = part.corners;
+  const double s = random.unit() * (1.0 - size), t = random.unit() * (1.0 - size);
+  const auto at = [&](double along, double up) {
+    const Vec3& from = corners[0].at;
+    return kernel::along(kernel::along(from, kernel::difference(corners[1].at, from), s + size * along),
+                         kernel::difference(corners.back().at, from), t + size * up);
+  };
+  std::vector<Vec3> points{at(0.5, 0.5)};
+  for (int i = 0; i < 6; ++i) points.push_back(at(random.unit(), random.unit()));
+  return points;
+}
+
+// Faces of all kinds in between; tiles from large to tiny.
+TEST(SlopeBound, IsAtLeastEveryChangeOfThePointFactor) {
+  int finite = 0, tight = 0;
+  for (std::uint64_t s = 0; s < scaled_count(120); ++s) {
+    Random random(seed_of(s));
+    const std::string model = random.one_in(2) ? "soup" : random.one_in(2) ? "lattice" : "karkanis";
+    const Scene scene = models::make_scene(model + ":n=" + std::to_string(random.integer(1, 6)) +
+                                           ",cover=1,seed=" + std::to_string(seed_of(s) % 1000000));
+    const Seen seen(scene);
+    if (!seen.sees()) continue;
+    const SlopeBound bound = seen.bound();
+    for (const double size : {0.25, 0.03, 0.004}) {
+      const std::vector<Vec3> points = points_of_tile(seen.receiver(), random, size);
+      double radius = 0.0;
+      for (const Vec3& point : points) radius = std::max(radius, kernel::distance(points[0], point));
+      const double slope = bound.about(points[0], radius);
+      if (!(slope < HUGE_VAL)) continue;
+      ++finite;
+      double steepest = 0.0;
+      for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        const double distance = kernel::distance(points[i], points[i + 1]);
+        const double change = std::abs(seen.factor(points[i]) - seen.factor(points[i + 1]));
+        EXPECT_LE(change, slope * distance + 0x1p-40) << model << ' ' << s << ' ' << size;
+        steepest = std::max(steepest, change / distance);
+      }
+      tight += steepest > 0.1 * slope ? 1 : 0;
+    }
+  }
+  EXPECT_GT(finite, 100);
+  EXPECT_GT(tight, finite / 20);
+}
+
+class SlopeOfSquares : public testing::Test {
+ protected:
+  SlopeOfSquares() {
+    plain_.add_ring(plain_.patch("floor"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+    plain_.add_ring(plain_.patch("source"), {{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}});
+  }
+  // With the faces so far.
+  [[nodiscard]] double slope(const Vec3& at, double radius) const {
+    const Scene scene = generate::build(plain_);
+    return Seen(scene).slope(at, radius);
+  }
+  void cover(const std::vector<Vec3>& ring) { plain_.add_ring(plain_.patch("cover"), ring); }
+
+  PlainScene plain_;
+};
+
+// A cover that is cut in two, or has a flap at the same side, moves the same edges.
+TEST_F(SlopeOfSquares, LeavesOutEdgesBetweenCovers) {
+  const Vec3 at{0.5, 0.5, 0};
+  const double open = slope(at, 0.01);
+  PlainScene before = plain_;
+  cover({{0.25, 0.25, 0.5}, {0.75, 0.25, 0.5}, {0.75, 0.75, 0.5}, {0.25, 0.75, 0.5}});
+  const double of_whole = slope(at, 0.01);
+  EXPECT_GT(of_whole, 1.1 * open);
+  plain_ = before;
+  cover({{0.25, 0.25, 0.5}, {0.75, 0.25, 0.5}, {0.75, 0.5, 0.625}, {0.25, 0.5, 0.625}});
+  cover({{0.25, 0.5, 0.625}, {0.75, 0.5, 0.625}, {0.75, 0.75, 0.5}, {0.25, 0.75, 0.5}});
+  const double of_halves = slope(at, 0.01);
+  EXPECT_LT(of_halves, 1.03 * of_whole) << "the ridge is seen from below";
+  // From beside, one of the two turns its other side, and the ridge is an outline.
+  plain_ = before;
+  cover({{0.25, 0.25, 0.25}, {0.75, 0.25, 0.25}, {0.75, 0.5, 0.75}, {0.25, 0.5, 0.75}});
+  cover({{0.25, 0.5, 0.75}, {0.75, 0.5, 0.75}, {0.75, 0.75, 0.25}, {0.25, 0.75, 0.25}});
+  const double ridge = slope({0.5, 0.0625, 0}, 0.01);
+  plain_ = before;
+  cover({{0.25, 0.25, 0.25}, {0.75, 0.25, 0.25}, {0.75, 0.5, 0.75}, {0.25, 0.5, 0.75}});
+  EXPECT_GE(ridge, slope({0.5, 0.0625, 0}, 0.01) - 1e-9);
+}
+
+TEST_F(SlopeOfSquares, LeavesOutWhatIsBesideTheSource) {
+  plain_ = {};
+  plain_.add_ring(plain_.patch("floor"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  plain_.add_ring(plain_.patch("source"), {{0, 0.25, 1}, {0.25, 0.25, 1}, {0.25, 0, 1}, {0, 0, 1}});
+  const Vec3 near{0.125, 0.125, 0}, far{0.875, 0.875, 0};
+  const double open_near = slope(near, 0.01), open_far = slope(far, 0.01);
+  cover({{0.0625, 0.0625, 0.5}, {0.1875, 0.0625, 0.5}, {0.1875, 0.1875, 0.5}, {0.0625, 0.1875, 0.5}});
+  EXPECT_GT(slope(near, 0.01), open_near + 0.1);
+  EXPECT_EQ(slope(far, 0.01), open_far);
+  EXPECT_GT(slope(far, 0.5), open_far) << "from some points of a large tile, it may be before the source";
+}
+
+// F jumps where a wall stands.
+TEST_F(SlopeOfSquares, IsInfiniteAtContacts) {
+  cover({{0.5, 0.25, 0}, {0.5, 0.75, 0}, {0.5, 0.75, 0.5}, {0.5, 0.25, 0.5}});
+  EXPECT_EQ(slope({0.5, 0.5, 0}, 0.01), HUGE_VAL);
+  EXPECT_EQ(slope({0.4, 0.5, 0}, 0.2), HUGE_VAL);
+  EXPECT_LT(slope({0.25, 0.5, 0}, 0.01), 10.0);
+}
+
+}  // namespace
+}  // namespace exactff::view_factors
