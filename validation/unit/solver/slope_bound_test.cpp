@@ -141,14 +141,18 @@ TEST_F(SlopeOfSquares, LeavesOutEdgesBetweenCovers) {
   cover({{0.25, 0.5, 0.625}, {0.75, 0.5, 0.625}, {0.75, 0.75, 0.5}, {0.25, 0.75, 0.5}});
   const double of_halves = slope(at, 0.01);
   EXPECT_LT(of_halves, 1.03 * of_whole) << "the ridge is seen from below";
-  // From beside, one of the two turns its other side, and the ridge is an outline.
-  plain_ = before;
-  cover({{0.25, 0.25, 0.25}, {0.75, 0.25, 0.25}, {0.75, 0.5, 0.75}, {0.25, 0.5, 0.75}});
-  cover({{0.25, 0.5, 0.75}, {0.75, 0.5, 0.75}, {0.75, 0.75, 0.25}, {0.25, 0.75, 0.25}});
-  const double ridge = slope({0.5, 0.0625, 0}, 0.01);
-  plain_ = before;
-  cover({{0.25, 0.25, 0.25}, {0.75, 0.25, 0.25}, {0.75, 0.5, 0.75}, {0.25, 0.5, 0.75}});
-  EXPECT_GE(ridge, slope({0.5, 0.0625, 0}, 0.01) - 1e-9);
+}
+
+// A long roof of which nothing but the ridge can be seen before the source: from beside, it is an outline.
+TEST_F(SlopeOfSquares, CountsRidgesThatAreOutlines) {
+  plain_ = {};
+  plain_.add_ring(plain_.patch("floor"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  plain_.add_ring(plain_.patch("source"), {{0.375, 0.625, 1}, {0.625, 0.625, 1}, {0.625, 0.375, 1}, {0.375, 0.375, 1}});
+  const Vec3 beside{0.3125, 0.5, 0};
+  const double open = slope(beside, 0.001);
+  cover({{0.375, -2, 0.125}, {0.375, 3, 0.125}, {0.40625, 3, 0.5}, {0.40625, -2, 0.5}});
+  cover({{0.40625, -2, 0.5}, {0.40625, 3, 0.5}, {0.4375, 3, 0.125}, {0.4375, -2, 0.125}});
+  EXPECT_GT(slope(beside, 0.001), open + 0.05);
 }
 
 TEST_F(SlopeOfSquares, LeavesOutWhatIsBesideTheSource) {
