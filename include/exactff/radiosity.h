@@ -35,13 +35,17 @@ struct BoundedValue {
 };
 
 // Where the light goes, in the unit of Ke times area: bounds of sums over all patches and bounces.
-//   emitted = absorbed + what meets backs of faces + what meets nothing
+//   emitted = absorbed + what meets backs of faces (back) + what meets nothing (open)
+// `lost` is back and open together. Where the matrix does not have these two, `lost` is what the view factors of each
+// row leave of 1, and each of the two is at most that: 0 where no point of a patch is before the back of a face, or
+// where a closed surface stands around all that it sees, and then the other is all that is lost.
+//
 // The bounds of the sums are clipped by what is proved (src/products/radiosity/balance.h), however wide the view
 // factors are. None of them is below 0, and while `reasons_against_balance` is empty none of the three is above what is
 // emitted. But if some Kd is above 1, `absorbed` may be negative and light may be gained: then only sums that are
 // bounded have upper bounds. Where B is infinite, light that bounces for ever is in none of the three.
 struct Balance {
-  matrix::Sum emitted, absorbed, back, open;
+  matrix::Sum emitted, absorbed, back, open, lost;
 };
 
 struct Channel {
@@ -67,6 +71,7 @@ struct Solution {
   Claim claim_of_balance = Claim::kZero;
   // Why the two sides of the balance need not agree: "some faces are transparent". Empty: they agree.
   std::vector<std::string> reasons_against_balance;
+  bool lost_is_rest = false;  // back or open are not computed, so that the balance tests less: no row is above 1
 
   [[nodiscard]] bool is_bounded() const {
     return channels[0].is_bounded() && channels[1].is_bounded() && channels[2].is_bounded();
@@ -79,15 +84,15 @@ struct Solution {
 
 struct Options {
   ViewFactorOptions factors = {};
-  int threads = 0;  // 0: all; does not affect the result
+  bool backs = false;  // also compute what meets backs, so that the balance tells it from what is open
+  int threads = 0;     // 0: all; does not affect the result
 };
 
-// What solve() needs to know of a scene with so many patches, for matrix::compute: `back` and `open` as well, for the
-// balance alone, and therefore with few cells an entry: some 40,000 for all patches, at most 2,000 for one.
-[[nodiscard]] matrix::Options matrix_options(const Options& options, std::size_t patches);
+// What solve() needs to know, for matrix::compute.
+[[nodiscard]] matrix::Options matrix_options(const Options& options);
 
-// Requires the factors between all of patches_of(scene), as rows and as columns, with `back` and `open`. Throws
-// std::invalid_argument otherwise, and what patches_of throws.
+// Requires the factors between all of patches_of(scene), as rows and as columns. If the matrix has `back` or `open`,
+// the balance uses them. Throws std::invalid_argument otherwise, and what patches_of throws.
 [[nodiscard]] Solution solve(const Scene& scene, const matrix::Matrix& matrix);
 
 // Computes the view factors first. Throws what matrix::compute and patches_of throw.

@@ -76,6 +76,16 @@ def test_the_balance_is_possible_however_coarse_the_view_factors_are():
         assert (part[:, 1] <= balance.emitted[:, 1]).all()
 
 
+def test_backs_are_told_from_the_sky_on_request():
+    squares = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+    shed = exactff.Scene(squares, [[0, 1, 2, 3], [4, 5, 6, 7]], [0, 1], ["floor", "roof"],
+                         {"floor": {"radiosity": 1.0}})  # the roof's front is above
+    together, apart = (exactff.radiosity(shed, accuracy=1e-4, backs=backs).balance for backs in (False, True))
+    np.testing.assert_allclose(together.lost, 1.0, atol=1e-9)
+    assert (together.back[:, 0] == 0.0).all()
+    np.testing.assert_allclose(apart.back, 0.19982489569838738, atol=1e-3)
+
+
 def test_without_a_bound_there_is_a_warning():
     with pytest.warns(exactff.ModellingWarning, match="no bound for red .Kd is 1 or more on side 0"):
         found = exactff.radiosity(cube([1.0, 0.5, 0.5], [1.0, 1.0, 1.0]), accuracy=1e-2)

@@ -53,14 +53,17 @@ constexpr const char* kRadiosityFooter =
     "patch\n"
     "(its centre, and near its corners), by exact form factors, from its one radiosity. --divide LENGTH makes smaller\n"
     "ones. `exactff render --radiosity FILE` shows the light of the file that -o writes.\n"
-    "--matrix FILE takes the view factors from a file of `exactff matrix SCENE --backs --to all,sky -o FILE`, a run "
-    "that\n"
-    "--resume continues and --shard and mpirun share out. One of another scene is refused.\n"
+    "--matrix FILE takes the view factors from a file of `exactff matrix SCENE -o FILE`, a run that --resume continues "
+    "and\n"
+    "--shard and mpirun share out. One of another scene is refused.\n"
     "With -o FILE, finished view factors are kept in FILE.factors.part until all is done; after an interruption, "
     "--resume\n"
     "continues from there.\n"
     "The balance is printed as bounds, [lower, upper], within what is possible; a number alone is rounded to six "
     "digits.\n"
+    "What is lost meets backs or leaves (open). The two are told apart where one of them is proved to be nothing. "
+    "Elsewhere\n"
+    "--backs computes what meets backs; a matrix made with --backs --to all,sky has both.\n"
     "\n"
     "Examples:\n"
     "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4\n"
@@ -73,8 +76,7 @@ constexpr std::string_view kSceneHash = "scene hash ";  // in the head of a matr
 struct RadiosityArguments {
   flags::SceneArguments scene;
   std::vector<std::string> two_sided;
-  ViewFactorOptions factors;
-  int threads = 0;
+  radiosity::Options options;
   bool plain = false, json = false, csv = false;
   std::string output, vtk;
   std::string matrix;  // a file
@@ -143,12 +145,12 @@ void print_balance(const Solution& solution, std::size_t channels) {
   std::cout << "\nWhere the light goes, in the unit of Ke times area:\n";
   TextTable table;
   if (channels > 1) table.add_column("channel");
-  for (const char* title : {"emitted", "absorbed", "(back)", "(open)"}) table.add_column(title);
+  for (const char* title : {"emitted", "absorbed", "lost", "(back)", "(open)"}) table.add_column(title);
   for (std::size_t c = 0; c < channels; ++c) {
     const radiosity::Balance& balance = solution.channels[c].balance;
     std::vector<std::string> cells;
     if (channels > 1) cells.emplace_back(kChannelNames[c]);
-    for (const matrix::Sum& part : {balance.emitted, balance.absorbed, balance.back, balance.open}) {
+    for (const matrix::Sum& part : {balance.emitted, balance.absorbed, balance.lost, balance.back, balance.open}) {
       cells.push_back(part_text(part, balance.emitted));
     }
     table.add_row(std::move(cells));
@@ -163,6 +165,9 @@ void print_claims(const Solution& solution, bool balanced) {
   const std::vector<std::string>& reasons = solution.reasons_against_balance;
   if (!reasons.empty()) {
     std::cout << "What is emitted need not be what arrives: " << text::enumerate(reasons) << ".\n";
+  } else if (balanced && solution.lost_is_rest) {
+    std::cout
+        << "What is lost is what the view factors of each patch leave of 1; within their bounds, no sum exceeds 1.\n";
   } else if (balanced) {
     std::cout << "Within the bounds, what is emitted is what is absorbed, meets backs or leaves.\n";
   }
@@ -230,6 +235,7 @@ nlohmann::ordered_json channel_json(const Solution& solution, const Channel& cha
   if (!channel.is_bounded()) json["no_bound"] = channel.no_bound;
   json["balance"] = {{"emitted", to_json(balance.emitted)},
                      {"absorbed", to_json(balance.absorbed)},
+                     {"lost", to_json(balance.lost)},
                      {"back", to_json(balance.back)},
                      {"open", to_json(balance.open)}};
   return json;
@@ -240,8 +246,8 @@ void print_json(const RadiosityArguments& args, const Scene& scene, const Soluti
                                  {"version", kVersion},
                                  {"scene", args.scene.path},
                                  {"scene_hash", scene.hash()},
-                                 {"accuracy", args.factors.accuracy},
-                                 {"budget", args.factors.budget},
+                                 {"accuracy", args.options.factors.accuracy},
+                                 {"budget", args.options.factors.budget},
                                  {"claim_of_balance", to_string(solution.claim_of_balance)}};
   json["reasons_against_balance"] = solution.reasons_against_balance;
   json["channels"] = nlohmann::ordered_json::object();
@@ -318,7 +324,7 @@ void print(const RadiosityArguments& args, const Scene& scene, const Solution& s
   } else if (args.json) {
     print_json(args, scene, solution);
   } else if (args.csv) {
-    std::cout << csv_text(scene, solution, args.factors, args.origin());
+    std::cout << csv_text(scene, solution, args.options.factors, args.origin());
   } else {
     print_for_people(scene, solution, balanced);
     if (!args.output.empty()) std::cout << "Radiosities: " << text::printable(args.output) << '\n';
@@ -349,14 +355,9 @@ void require_matrix_of(const Scene& scene, const matrix::Table& table) {
   const bool is_of_scene = std::ranges::any_of(table.header, [&](const std::string& line) {
     return line.starts_with(std::string(kSceneHash) + scene.hash() + ';');
   });
-  if (!is_of_scene) {
-    text::refuse(std::filesystem::path(table.file), "holds the view factors of another scene",
-                 "its head has another hash", "give the same scene, with the same --divide, --two-sided and --patches");
-  }
-  if (!table.back.empty() && !table.open.empty()) return;
-  text::refuse(std::filesystem::path(table.file), "has no columns (back) and (open)",
-               "the balance needs what meets backs and what is open",
-               "compute it by exactff matrix SCENE --backs --to all,sky -o FILE");
+  if (is_of_scene) return;
+  text::refuse(std::filesystem::path(table.file), "holds the view factors of another scene",
+               "its head has another hash", "give the same scene, with the same --divide, --two-sided and --patches");
 }
 
 // Nothing if it was interrupted.
@@ -377,7 +378,7 @@ std::optional<matrix::Matrix> view_factors_of(const RadiosityArguments& args, co
                                               const std::vector<Selection>& patches, const Hooks& hooks,
                                               ViewFactorOptions& options) {
   if (args.matrix.empty()) {
-    const matrix::Options of_matrix = radiosity::matrix_options({options, args.threads}, patches.size());
+    const matrix::Options of_matrix = radiosity::matrix_options(args.options);
     if (!args.keeps_work()) return matrix::compute(scene, patches, patches, of_matrix, hooks);
     return kept_view_factors(args,
                              {.scene = &scene, .from = patches, .to = patches, .options = of_matrix, .shard = {}});
@@ -385,13 +386,13 @@ std::optional<matrix::Matrix> view_factors_of(const RadiosityArguments& args, co
   const matrix::Table table = matrix::read_csv(args.matrix);
   require_matrix_of(scene, table);
   options = options_of(table);
-  const matrix::Options with_all{.factors = options, .backs = true, .open = true};
-  return matrix::read({.scene = &scene, .from = patches, .to = patches, .options = with_all, .shard = {}}, args.matrix);
+  const matrix::Options as_there{.factors = options, .backs = !table.back.empty(), .open = !table.open.empty()};
+  return matrix::read({.scene = &scene, .from = patches, .to = patches, .options = as_there, .shard = {}}, args.matrix);
 }
 
 void set_variation(const RadiosityArguments& args, const Scene& scene, Solution& solution, const Hooks& hooks) {
   try {
-    radiosity::set_variation(scene, solution, args.threads, hooks);
+    radiosity::set_variation(scene, solution, args.options.threads, hooks);
   } catch (const Cancelled&) {
     if (args.keeps_work()) {
       std::cerr << "note: all view factors are kept in " + text::printable(args.kept_factors()) +
@@ -412,13 +413,16 @@ int run(const RadiosityArguments& given) {
   }
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
-  const std::optional<matrix::Matrix> matrix = view_factors_of(args, scene, patches, hooks, args.factors);
+  std::optional<matrix::Matrix> matrix = view_factors_of(args, scene, patches, hooks, args.options.factors);
   if (!matrix) return exit_code_of_interruption();
   Solution solution = radiosity::solve(scene, *matrix);
   set_variation(args, scene, solution, hooks);
   bar.clear();
-  print_warnings(problems_of_width(scene, matrix::Matrix{matrix->factors, {}, {}}, args.factors));
-  if (!args.output.empty()) write_whole_file(args.output, csv_text(scene, solution, args.factors, args.origin()));
+  matrix->back.clear();
+  matrix->open.clear();
+  print_warnings(problems_of_width(scene, *matrix, args.options.factors));
+  if (!args.output.empty())
+    write_whole_file(args.output, csv_text(scene, solution, args.options.factors, args.origin()));
   if (args.keeps_work()) std::filesystem::remove(args.kept_factors());
   if (!args.vtk.empty()) write_vtk(scene, solution, args.vtk);
   const bool balanced = test_balance(solution);
@@ -453,21 +457,27 @@ Command add_radiosity(CLI::App& app) {
   args->scene.add_to(*command);
   args->scene.add_divide_to(*command);
   command->add_option("--two-sided", args->two_sided, kTwoSidedHelp)->type_name("NAME");
-  CLI::Option* accuracy =
-      command->add_option("--accuracy", args->factors.accuracy, "Largest width of a view factor, for F_ij and for F_ji")
-          ->capture_default_str();
-  CLI::Option* budget = command->add_option("--budget", args->factors.budget, kBudgetHelp)
+  CLI::Option* accuracy = command
+                              ->add_option("--accuracy", args->options.factors.accuracy,
+                                           "Largest width of a view factor, for F_ij and for F_ji")
+                              ->capture_default_str();
+  CLI::Option* budget = command->add_option("--budget", args->options.factors.budget, kBudgetHelp)
                             ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
                             ->capture_default_str();
-  const ClaimOptions claims = add_claim(*command, args->factors.certify);
+  CLI::Option* backs =
+      command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces, for the balance");
+  const ClaimOptions claims = add_claim(*command, args->options.factors.certify);
   command->add_option("--matrix", args->matrix, "Take the view factors from this file of exactff matrix")
       ->type_name("FILE")
       ->excludes(accuracy)
       ->excludes(budget)
+      ->excludes(backs)
       ->excludes(claims.claim)
       ->excludes(claims.certify);
   add_outputs(*command, *args);
-  command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
+  command
+      ->add_option("--threads", args->options.threads,
+                   "Number of threads (default: all); it does not affect the values")
       ->check(CLI::Range(0, 1024));
   return {command, [args] { return run(*args); }};
 }

@@ -31,13 +31,13 @@ Numbers quantities_of(const Solution& solution) {
   return array;
 }
 
-// For each channel the bounds of what is emitted, absorbed, meets backs and leaves.
+// For each channel the bounds of what is emitted, absorbed, meets backs, leaves, and does either of these two.
 py::list balance_of(const Solution& solution) {
   py::list list;
   for (const Channel& channel : solution.channels) {
     const radiosity::Balance& b = channel.balance;
     py::list parts;
-    for (const matrix::Sum& sum : {b.emitted, b.absorbed, b.back, b.open}) {
+    for (const matrix::Sum& sum : {b.emitted, b.absorbed, b.back, b.open, b.lost}) {
       parts.append(py::make_tuple(sum.lower, sum.upper));
     }
     list.append(parts);
@@ -52,16 +52,17 @@ std::size_t wide_entries(const matrix::Matrix& matrix) {
 }
 
 // Names, areas, quantities, reasons for no bound, claim, balance, its claim, reasons against it, wide view factors.
-py::tuple radiosity_of(const SharedScene& scene, double accuracy, std::size_t budget, int threads,
+py::tuple radiosity_of(const SharedScene& scene, double accuracy, std::size_t budget, bool backs, int threads,
                        const py::object& progress) {
   const Scene& in = scene.scene();
   Interrupt interrupt(progress);
   std::size_t wide = 0;
   const Solution solution = interrupt.run([&] {
     const std::vector<Selection> patches = radiosity::patches_of(in);
-    const matrix::Options options = radiosity::matrix_options(
-        {.factors = {.accuracy = accuracy, .budget = budget}, .threads = threads}, patches.size());
-    const matrix::Matrix matrix = matrix::compute(in, patches, patches, options, interrupt.hooks());
+    const radiosity::Options options{
+        .factors = {.accuracy = accuracy, .budget = budget}, .backs = backs, .threads = threads};
+    const matrix::Matrix matrix =
+        matrix::compute(in, patches, patches, radiosity::matrix_options(options), interrupt.hooks());
     wide = wide_entries(matrix);
     return radiosity::solve(in, matrix);
   });
@@ -76,8 +77,8 @@ py::tuple radiosity_of(const SharedScene& scene, double accuracy, std::size_t bu
 }  // namespace
 
 void bind_radiosity(py::module_& module) {
-  module.def("radiosity", &radiosity_of, py::arg("scene"), py::arg("accuracy"), py::arg("budget"), py::arg("threads"),
-             py::arg("progress"));
+  module.def("radiosity", &radiosity_of, py::arg("scene"), py::arg("accuracy"), py::arg("budget"), py::arg("backs"),
+             py::arg("threads"), py::arg("progress"));
 }
 
 }  // namespace exactff::python

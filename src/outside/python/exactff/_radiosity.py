@@ -18,15 +18,17 @@ from ._views import _accuracy, _budget, _warn_of_width
 class Balance:
     """Where the light goes, in the unit of Ke times area: bounds of sums over all patches, one row for each channel.
 
-    ``emitted`` is the sum of the others, unless ``Radiosity.reasons_against_balance`` says why it need not be. Then no
+    ``emitted`` is the sum of ``absorbed`` and ``lost``, unless ``Radiosity.reasons_against_balance`` says why it need not be. Then no
     part is above what is emitted, and none is ever below 0; but a Kd above 1 may make ``absorbed`` negative, and, in a
-    channel without a bound, every upper bound infinite. Bounds are as strong as ``Radiosity.claim_of_balance``.
+    channel without a bound, every upper bound infinite. ``lost`` is told apart where one of ``back`` and ``open`` is
+    proved to be nothing, or if ``backs=True`` was asked for. Bounds are as strong as ``Radiosity.claim_of_balance``.
     """
 
     emitted: Floats  #: (3, 2)
     absorbed: Floats  #: (3, 2)
     back: Floats  #: (3, 2), what meets the backs of faces
     open: Floats  #: (3, 2), what meets nothing
+    lost: Floats  #: (3, 2), the last two together
 
 
 @dataclass(frozen=True)
@@ -53,8 +55,7 @@ class Radiosity:
     reasons_against_balance: tuple[str, ...]
 
 
-def radiosity(scene: Scene, *, accuracy: float = 1e-6, budget: int = 100_000, threads: int = 0,
-              progress: Progress = None) -> Radiosity:
+def radiosity(scene: Scene, *, accuracy: float = 1e-6, budget: int = 100_000, backs: bool = False, threads: int = 0, progress: Progress = None) -> Radiosity:
     """The radiosity of every patch after all bounces, with bounds: the values of ``exactff radiosity`` bit for bit.
 
     E is Ke, rho is Kd; each patch has one radiosity, so divide patches where that is too coarse.
@@ -62,6 +63,7 @@ def radiosity(scene: Scene, *, accuracy: float = 1e-6, budget: int = 100_000, th
     Parameters
     ----------
     accuracy, budget : of each view factor, as in :func:`view_factor`
+    backs : whether to compute what meets the backs of faces, for the balance
     threads : 0 for as many as this process may use; no value depends on it
     progress : None for a bar of tqdm on a terminal; True, False, or a function of (done, total)
 
@@ -70,7 +72,7 @@ def radiosity(scene: Scene, *, accuracy: float = 1e-6, budget: int = 100_000, th
     """
     with shown(progress, "view factor") as tell:
         names, areas, numbers, no_bound, claim, parts, claim_of_balance, reasons, wide = _exactff.radiosity(
-            scene._scene, _accuracy(accuracy), _budget(budget), _arrays.thread_count(threads), tell)
+            scene._scene, _accuracy(accuracy), _budget(budget), bool(backs), _arrays.thread_count(threads), tell)
     _warn_of_width(wide, accuracy, budget)
     for channel, reason in zip(("red", "green", "blue"), no_bound):
         if reason:
@@ -80,5 +82,5 @@ def radiosity(scene: Scene, *, accuracy: float = 1e-6, budget: int = 100_000, th
     balance = np.array(parts, np.float64)
     return Radiosity(tuple(names), np.array(areas, np.float64), value, lower, upper, irradiance, irradiance_lower,
                      irradiance_upper, claim, (no_bound[0], no_bound[1], no_bound[2]),
-                     Balance(balance[:, 0], balance[:, 1], balance[:, 2], balance[:, 3]), claim_of_balance,
-                     tuple(reasons))
+                     Balance(balance[:, 0], balance[:, 1], balance[:, 2], balance[:, 3], balance[:, 4]),
+                     claim_of_balance, tuple(reasons))
