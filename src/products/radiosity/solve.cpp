@@ -8,6 +8,7 @@
 #include "kernel/float_environment.h"
 #include "matrix/row_facts.h"
 #include "radiosity/balance.h"
+#include "radiosity/narrowing.h"
 #include "radiosity/system.h"
 #include "scene/scene_data.h"
 #include "text/phrases.h"
@@ -166,6 +167,12 @@ std::vector<Selection> patches_of(const Scene& scene) {
   return patches;
 }
 
+System system_of(const Scene& scene, const matrix::Factors& factors, std::size_t channel) {
+  System system{factors_of(factors), {}, {}};
+  set_colours(scene, factors.from, kChannels[channel], system);
+  return system;
+}
+
 Solution solve(const Scene& scene, const matrix::Matrix& matrix) {
   const kernel::StandardArithmetic arithmetic;
   require_complete(scene, matrix);
@@ -193,12 +200,14 @@ Solution solve(const Scene& scene, const matrix::Matrix& matrix) {
 }
 
 matrix::Options matrix_options(const Options& options) {
+  if (options.width) require_width(*options.width);
   return {.factors = options.factors, .backs = options.backs, .threads = options.threads};
 }
 
 Solution solve(const Scene& scene, const Options& options, const Hooks& hooks) {
   const std::vector<Selection> patches = patches_of(scene);
-  return solve(scene, matrix::compute(scene, patches, patches, matrix_options(options), hooks));
+  matrix::Matrix matrix = matrix::compute(scene, patches, patches, matrix_options(options), hooks);
+  return solve_within(scene, matrix, options, nullptr, hooks);
 }
 
 std::string_view claim_text(const Solution& solution, const Channel& channel) {

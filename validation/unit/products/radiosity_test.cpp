@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -16,6 +18,7 @@
 
 #include "exactff/scene_files.h"
 #include "generate/plain_scene.h"
+#include "radiosity/narrowing.h"
 #include "support/program.h"
 
 namespace exactff::radiosity {
@@ -270,6 +273,107 @@ TEST(Radiosity, OfAnySizeIsBounded) {
   EXPECT_FALSE(solution.is_bounded());
 }
 
+// --- Bounds of a wanted width ---
+
+// The two plates, and one between them.
+PlainScene three_plates() {
+  PlainScene scene = plates();
+  add(scene, "between", {{0.25, 0.25, 0.5}, {0.75, 0.25, 0.5}, {0.75, 0.75, 0.5}, {0.25, 0.75, 0.5}}, kUpperKd, {});
+  add(scene, "wall", {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}}, kLowerKd, {});
+  return scene;
+}
+
+TEST(RadiosityWidth, OfAFurnaceIsReachedAroundTheKnownValue) {
+  const Scene scene = generate::build(cube({0.5, 0.75, 0.0}, {1, 3, 0.1}));
+  const Options coarse{.factors = {.accuracy = 0.02}}, narrow{.factors = {.accuracy = 0.02}, .width = 2e-3};
+  EXPECT_GT(widest_bounds(solve(scene, coarse)).share, 2e-3);
+  const Solution solution = solve(scene, narrow);
+  EXPECT_LE(widest_bounds(solution).share, 2e-3);
+  EXPECT_GT(solution.computed_again, 0U);
+  for (std::size_t i = 0; i < 6; ++i) {
+    expect_holds(solution.channels[0].radiosity[i], 2.0, 2e-3 * 2.0);
+    expect_holds(solution.channels[1].radiosity[i], 12.0, 2e-3 * 12.0);
+  }
+}
+
+// Too coarse to prove that less light is reflected than arrives.
+TEST(RadiosityWidth, IsReachedFromFactorsThatProveNoBound) {
+  const Scene scene = generate::build(cube({0.95, 0.95, 0.95}, {1, 1, 1}));
+  EXPECT_FALSE(solve(scene, {.factors = {.accuracy = 0.2}}).is_bounded());
+  const Solution solution = solve(scene, {.factors = {.accuracy = 0.2}, .width = 0.05});
+  EXPECT_LE(widest_bounds(solution).share, 0.05);
+  expect_holds(solution.channels[0].radiosity[0], 20.0, 1.0);
+}
+
+TEST(RadiosityWidth, EntriesAreWhatViewFactorGivesWithTheirAccuracy) {
+  const Scene scene = generate::build(three_plates());
+  const std::vector<Selection> patches = patches_of(scene);
+  const Options options{.factors = {.accuracy = 0.5}, .width = 1e-5};
+  const validation::TemporaryDirectory folder;
+  jobs::Journal journal(folder.path() / "again.part", jobs::Existing::kRefuse);
+  matrix::Matrix matrix = matrix::compute(scene, patches, patches, matrix_options(options));
+  const Narrowed narrowed = narrow(scene, matrix, options, &journal, {});
+  std::set<int> halvings;
+  for (std::size_t e = 0; e < matrix.factors.entries.size(); ++e) {
+    halvings.insert(narrowed.halvings[e]);
+    const double accuracy = std::ldexp(0.5, -narrowed.halvings[e]);
+    const ViewFactor &f = matrix.factors.entries[e],
+                     g = view_factor(scene, patches[e / 4], patches[e % 4], {.accuracy = accuracy});
+    EXPECT_EQ(f.value, g.value) << e;
+    EXPECT_EQ(f.lower, g.lower) << e;
+    EXPECT_EQ(f.upper, g.upper) << e;
+    EXPECT_EQ(f.cells, g.cells) << e;
+  }
+  EXPECT_GT(halvings.size(), 2U);
+  EXPECT_LE(widest_bounds(solve(scene, matrix)).share, 1e-5);
+  EXPECT_GT(journal.size(), narrowed.entries / 2) << "some pairs are computed twice";
+}
+
+TEST(RadiosityWidth, DoesNotDependOnThreadsOrInterruptions) {
+  const Scene scene = generate::build(three_plates());
+  const std::vector<Selection> patches = patches_of(scene);
+  Options options{.factors = {.accuracy = 0.1}, .width = 1e-4, .threads = 1};
+  const auto text = [&](const Solution& solution) { return csv_text(scene, solution, options.factors); };
+  const std::string one = text(solve(scene, options));
+  options.threads = 3;
+  EXPECT_EQ(text(solve(scene, options)), one);
+  const validation::TemporaryDirectory folder;
+  const std::filesystem::path file = folder.path() / "again.part";
+  const matrix::Matrix first = matrix::compute(scene, patches, patches, matrix_options(options));
+  {
+    jobs::Journal journal(file, jobs::Existing::kRefuse);
+    matrix::Matrix matrix = first;
+    EXPECT_THROW((void)solve_within(scene, matrix, options, &journal, {{}, [&] { return journal.size() >= 2; }}),
+                 Cancelled);
+  }
+  std::uintmax_t size = 0;
+  for (int again = 0; again < 2; ++again) {
+    jobs::Journal journal(file, jobs::Existing::kResume);
+    EXPECT_GE(journal.size(), 2U);
+    matrix::Matrix matrix = first;
+    EXPECT_EQ(text(solve_within(scene, matrix, options, &journal, {})), one);
+    EXPECT_TRUE(again == 0 || std::filesystem::file_size(file) == size) << "nothing was left to compute";
+    size = std::filesystem::file_size(file);
+  }
+}
+
+TEST(RadiosityWidth, ThatTheBudgetDoesNotAllowIsNotClaimed) {
+  const Scene scene = generate::build(three_plates());
+  const Solution solution = solve(scene, {.factors = {.accuracy = 0.1, .budget = 4}, .width = 1e-6});
+  EXPECT_TRUE(solution.is_bounded());
+  EXPECT_GT(widest_bounds(solution).share, 1e-6);
+  EXPECT_THROW((void)solve(scene, {.width = 0.0}), InputError);
+}
+
+// With work / width: 9 -> 3 costs 3 times 1; nothing is gained from the other.
+TEST(RadiosityWidth, SharesAreThoseOfTheLeastWork) {
+  EXPECT_EQ(shares_left({{9.0, 1.0}, {1.0, 4.0}}, 4.0), (Numbers{1.0 / 3.0, 1.0}));
+  EXPECT_EQ(shares_left({{9.0, 1.0}, {1.0, 4.0}}, 10.0), (Numbers{1.0, 1.0}));
+  const Numbers both = shares_left({{9.0, 1.0}, {1.0, 1.0}}, 1.0);
+  EXPECT_NEAR(9.0 * both[0], 0.75, 1e-15);
+  EXPECT_NEAR(1.0 * both[1], 0.25, 1e-15);
+}
+
 // --- The command ---
 
 class RadiosityCommand : public testing::Test {
@@ -431,6 +535,27 @@ TEST_F(RadiosityCommand, ContinuesAfterAnInterruption) {
   again.resize(4);
   again.emplace_back("--csv");
   EXPECT_EQ(validation::text_of(file("s.csv")), validation::run_program(EXACTFF_PROGRAM, again).output);
+}
+
+TEST_F(RadiosityCommand, MakesBoundsOfAWidthOrSaysHowWideTheyAre) {
+  const std::string scene = write(three_plates());
+  const auto command = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"radiosity", scene});
+    return validation::run_program(EXACTFF_PROGRAM, std::move(words));
+  };
+  const auto csv = command({"--width", "1e-3", "--csv"});
+  EXPECT_EQ(csv.exit_code, 0);
+  EXPECT_NE(csv.output.find(" again for bounds of 0.001 of the brightest\n"), std::string::npos) << csv.output;
+  EXPECT_EQ(command({"--width", "1e-3", "-o", file("w.csv")}).exit_code, 0);
+  EXPECT_EQ(validation::text_of(file("w.csv")), csv.output);
+  EXPECT_FALSE(std::filesystem::exists(file("w.csv.again.part")));
+  EXPECT_FALSE(std::filesystem::exists(file("w.csv.factors")));
+  const validation::RunningProgram wide(EXACTFF_PROGRAM, {"radiosity", scene, "--width", "1e-6", "--budget", "4"},
+                                        folder_.path() / "stderr");
+  EXPECT_EQ(wide.wait(), 0);
+  EXPECT_NE(wide.error().find("of the brightest radiosity wide, the widest of all, and not 1e-06"), std::string::npos)
+      << wide.error();
+  EXPECT_EQ(command({"--width", "0"}).exit_code, 2);
 }
 
 // The plate above, alone and turned round, shines from its back.
