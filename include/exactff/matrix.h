@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,9 +26,7 @@ struct Options {
   ViewFactorOptions factors = {};
   bool backs = false;  // also compute what meets the backs of faces
   bool open = false;   // also compute what meets nothing
-  // The limit of work for an entry of these two, if that is less than factors.budget.
-  std::size_t budget_beside = std::numeric_limits<std::size_t>::max();
-  int threads = 0;  // 0: all; does not affect the result
+  int threads = 0;     // 0: all; does not affect the result
 };
 
 struct Factors {

@@ -35,13 +35,17 @@ struct BoundedValue {
 };
 
 // Where the light goes, in the unit of Ke times area: bounds of sums over all patches and bounces.
-//   emitted = absorbed + what meets backs of faces + what meets nothing
+//   emitted = absorbed + what meets backs of faces (back) + what meets nothing (open)
+// `lost` is back and open together. Where the matrix does not have these two, `lost` is what the view factors of each
+// row leave of 1, and each of the two is at most that: 0 where no point of a patch is before the back of a face, or
+// where a closed surface stands around all that it sees, and then the other is all that is lost.
+//
 // The bounds of the sums are clipped by what is proved (src/products/radiosity/balance.h), however wide the view
 // factors are. None of them is below 0, and while `reasons_against_balance` is empty none of the three is above what is
 // emitted. But if some Kd is above 1, `absorbed` may be negative and light may be gained: then only sums that are
 // bounded have upper bounds. Where B is infinite, light that bounces for ever is in none of the three.
 struct Balance {
-  matrix::Sum emitted, absorbed, back, open;
+  matrix::Sum emitted, absorbed, back, open, lost;
 };
 
 struct Channel {
@@ -67,6 +71,9 @@ struct Solution {
   Claim claim_of_balance = Claim::kZero;
   // Why the two sides of the balance need not agree: "some faces are transparent". Empty: they agree.
   std::vector<std::string> reasons_against_balance;
+  bool lost_is_rest = false;       // back or open are not computed, so that the balance tests less: no row is above 1
+  std::optional<double> width;     // as asked for in Options
+  std::size_t computed_again = 0;  // view factors, for this width
 
   [[nodiscard]] bool is_bounded() const {
     return channels[0].is_bounded() && channels[1].is_bounded() && channels[2].is_bounded();
@@ -79,19 +86,34 @@ struct Solution {
 
 struct Options {
   ViewFactorOptions factors = {};
-  int threads = 0;  // 0: all; does not affect the result
+  // upper - lower is wanted to be at most this share of the brightest radiosity of the channel, for every patch. View
+  // factors are first computed with the accuracy in `factors`, which may be coarse: accuracy_for(width). Those that
+  // widen bounds too much are computed again, with half of it, or a quarter, an eighth, ... (narrowing.h), within the
+  // same budget; each is then as view_factor gives it alone with that accuracy. Nothing: the accuracy alone decides.
+  std::optional<double> width = {};
+  bool backs = false;  // also compute what meets backs, so that the balance tells it from what is open
+  int threads = 0;     // 0: all; does not affect the result
 };
 
-// What solve() needs to know of a scene with so many patches, for matrix::compute: `back` and `open` as well, for the
-// balance alone, and therefore with few cells an entry: some 40,000 for all patches, at most 2,000 for one.
-[[nodiscard]] matrix::Options matrix_options(const Options& options, std::size_t patches);
+// Of view factors, to begin with: few entries have to be more accurate.
+[[nodiscard]] double accuracy_for(double width);
 
-// Requires the factors between all of patches_of(scene), as rows and as columns, with `back` and `open`. Throws
-// std::invalid_argument otherwise, and what patches_of throws.
+// What solve() needs to know, for matrix::compute. Throws InputError for a width that is not positive and finite.
+[[nodiscard]] matrix::Options matrix_options(const Options& options);
+
+// Requires the factors between all of patches_of(scene), as rows and as columns. If the matrix has `back` or `open`,
+// the balance uses them. Throws std::invalid_argument otherwise, and what patches_of throws.
 [[nodiscard]] Solution solve(const Scene& scene, const matrix::Matrix& matrix);
 
-// Computes the view factors first. Throws what matrix::compute and patches_of throw.
+// Computes the view factors first. Throws what matrix_options, matrix::compute and patches_of throw.
 [[nodiscard]] Solution solve(const Scene& scene, const Options& options = {}, const Hooks& hooks = {});
+
+// The widest bounds of a radiosity, as a share of the brightest one of its channel (its lower bound).
+struct Widest {
+  std::size_t patch = 0, channel = 0;
+  double share = 0.0;  // infinite where there is no upper bound
+};
+[[nodiscard]] Widest widest_bounds(const Solution& solution);
 
 // Whether the bounds of both sides of the balance of every channel that is bounded have a number in common. If they do
 // not, although `reasons_against_balance` is empty, some bound does not hold.

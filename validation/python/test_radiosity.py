@@ -76,6 +76,28 @@ def test_the_balance_is_possible_however_coarse_the_view_factors_are():
         assert (part[:, 1] <= balance.emitted[:, 1]).all()
 
 
+def test_bounds_are_as_narrow_as_is_asked():
+    scene = cube([0.5, 0.75, 0.0], [1.0, 3.0, 0.1])
+    found = exactff.radiosity(scene, width=1e-3, accuracy=0.05)
+    assert found.computed_again > 0 and found.widest <= 1e-3
+    assert (found.upper - found.lower <= 1e-3 * found.lower.max(axis=0)).all()
+    truth = np.array([2.0, 12.0, 0.1])
+    assert (found.lower <= truth).all() and (truth <= found.upper).all()
+    with pytest.warns(exactff.ModellingWarning, match="the widest bounds are .* of the brightest radiosity wide, not 1e-07"):
+        dark = cube([0.25, 0.25, 0.25], [1.0, 1.0, 1.0])
+        assert exactff.radiosity(dark, width=1e-7, accuracy=0.01, budget=2).widest > 1e-7
+
+
+def test_backs_are_told_from_the_sky_on_request():
+    squares = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+    shed = exactff.Scene(squares, [[0, 1, 2, 3], [4, 5, 6, 7]], [0, 1], ["floor", "roof"],
+                         {"floor": {"radiosity": 1.0}})  # the roof's front is above
+    together, apart = (exactff.radiosity(shed, accuracy=1e-4, backs=backs).balance for backs in (False, True))
+    np.testing.assert_allclose(together.lost, 1.0, atol=1e-9)
+    assert (together.back[:, 0] == 0.0).all()
+    np.testing.assert_allclose(apart.back, 0.19982489569838738, atol=1e-3)
+
+
 def test_without_a_bound_there_is_a_warning():
     with pytest.warns(exactff.ModellingWarning, match="no bound for red .Kd is 1 or more on side 0"):
         found = exactff.radiosity(cube([1.0, 0.5, 0.5], [1.0, 1.0, 1.0]), accuracy=1e-2)
@@ -86,6 +108,7 @@ def test_without_a_bound_there_is_a_warning():
 @pytest.mark.parametrize("call", [
     lambda: exactff.radiosity(BOX, accuracy=0.0),
     lambda: exactff.radiosity(BOX, budget=0),
+    lambda: exactff.radiosity(BOX, width=0.0),
     lambda: exactff.radiosity(BOX, threads=-1),
 ])
 def test_bad_arguments_are_refused(call):

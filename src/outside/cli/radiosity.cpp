@@ -25,6 +25,7 @@
 #include "exactff/version.h"
 #include "flags/lists.h"
 #include "flags/scene.h"
+#include "radiosity/narrowing.h"
 #include "radiosity/on_faces.h"
 #include "text/interval.h"
 #include "text/json_document.h"
@@ -53,19 +54,26 @@ constexpr const char* kRadiosityFooter =
     "patch\n"
     "(its centre, and near its corners), by exact form factors, from its one radiosity. --divide LENGTH makes smaller\n"
     "ones. `exactff render --radiosity FILE` shows the light of the file that -o writes.\n"
-    "--matrix FILE takes the view factors from a file of `exactff matrix SCENE --backs --to all,sky -o FILE`, a run "
+    "--width W asks for bounds of at most W times the brightest radiosity of their channel. Only those view factors "
     "that\n"
-    "--resume continues and --shard and mpirun share out. One of another scene is refused.\n"
-    "With -o FILE, finished view factors are kept in FILE.factors.part until all is done; after an interruption, "
-    "--resume\n"
-    "continues from there.\n"
+    "widen some bounds too much are then computed again, each with the accuracy divided by a power of two. If "
+    "--budget\n"
+    "does not allow it, a warning says how wide the bounds are, and why.\n"
+    "--matrix FILE takes the view factors from a file of `exactff matrix SCENE -o FILE`, a run that --resume continues "
+    "and\n"
+    "--shard and mpirun share out. One of another scene is refused.\n"
+    "With -o FILE, finished view factors are kept in FILE.factors.part until all is done, those of --width that are\n"
+    "computed again in FILE.again.part; after an interruption, --resume continues from there.\n"
     "The balance is printed as bounds, [lower, upper], within what is possible; a number alone is rounded to six "
     "digits.\n"
+    "What is lost meets backs or leaves (open). The two are told apart where one of them is proved to be nothing. "
+    "Elsewhere\n"
+    "--backs computes what meets backs; a matrix made with --backs --to all,sky has both.\n"
     "\n"
     "Examples:\n"
     "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4\n"
     "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4 -o build/box.csv --vtk build/box.vtp\n"
-    "  exactff radiosity data/scenes/cornell_box.obj --divide 140 --accuracy 1e-3 --budget 1000 -o build/cells.csv";
+    "  exactff radiosity data/scenes/cornell_box.obj --divide 140 --width 1e-3 -o build/cells.csv";
 
 constexpr std::size_t kMostPatchesShown = 40;
 constexpr std::string_view kSceneHash = "scene hash ";  // in the head of a matrix
@@ -73,8 +81,8 @@ constexpr std::string_view kSceneHash = "scene hash ";  // in the head of a matr
 struct RadiosityArguments {
   flags::SceneArguments scene;
   std::vector<std::string> two_sided;
-  ViewFactorOptions factors;
-  int threads = 0;
+  radiosity::Options options;
+  std::optional<double> accuracy;
   bool plain = false, json = false, csv = false;
   std::string output, vtk;
   std::string matrix;  // a file
@@ -87,6 +95,7 @@ struct RadiosityArguments {
     return !output.empty() && matrix.empty() && !std::filesystem::is_other(output, ignored);
   }
   [[nodiscard]] std::string kept_factors() const { return output + ".factors"; }
+  [[nodiscard]] std::string kept_again() const { return output + ".again"; }
   [[nodiscard]] bool for_people() const { return !plain && !json && !csv; }
   [[nodiscard]] radiosity::Origin origin() const { return {scene.divide, two_sided}; }
 };
@@ -143,12 +152,12 @@ void print_balance(const Solution& solution, std::size_t channels) {
   std::cout << "\nWhere the light goes, in the unit of Ke times area:\n";
   TextTable table;
   if (channels > 1) table.add_column("channel");
-  for (const char* title : {"emitted", "absorbed", "(back)", "(open)"}) table.add_column(title);
+  for (const char* title : {"emitted", "absorbed", "lost", "(back)", "(open)"}) table.add_column(title);
   for (std::size_t c = 0; c < channels; ++c) {
     const radiosity::Balance& balance = solution.channels[c].balance;
     std::vector<std::string> cells;
     if (channels > 1) cells.emplace_back(kChannelNames[c]);
-    for (const matrix::Sum& part : {balance.emitted, balance.absorbed, balance.back, balance.open}) {
+    for (const matrix::Sum& part : {balance.emitted, balance.absorbed, balance.lost, balance.back, balance.open}) {
       cells.push_back(part_text(part, balance.emitted));
     }
     table.add_row(std::move(cells));
@@ -163,6 +172,9 @@ void print_claims(const Solution& solution, bool balanced) {
   const std::vector<std::string>& reasons = solution.reasons_against_balance;
   if (!reasons.empty()) {
     std::cout << "What is emitted need not be what arrives: " << text::enumerate(reasons) << ".\n";
+  } else if (balanced && solution.lost_is_rest) {
+    std::cout
+        << "What is lost is what the view factors of each patch leave of 1; within their bounds, no sum exceeds 1.\n";
   } else if (balanced) {
     std::cout << "Within the bounds, what is emitted is what is absorbed, meets backs or leaves.\n";
   }
@@ -230,6 +242,7 @@ nlohmann::ordered_json channel_json(const Solution& solution, const Channel& cha
   if (!channel.is_bounded()) json["no_bound"] = channel.no_bound;
   json["balance"] = {{"emitted", to_json(balance.emitted)},
                      {"absorbed", to_json(balance.absorbed)},
+                     {"lost", to_json(balance.lost)},
                      {"back", to_json(balance.back)},
                      {"open", to_json(balance.open)}};
   return json;
@@ -240,9 +253,13 @@ void print_json(const RadiosityArguments& args, const Scene& scene, const Soluti
                                  {"version", kVersion},
                                  {"scene", args.scene.path},
                                  {"scene_hash", scene.hash()},
-                                 {"accuracy", args.factors.accuracy},
-                                 {"budget", args.factors.budget},
+                                 {"accuracy", args.options.factors.accuracy},
+                                 {"budget", args.options.factors.budget},
                                  {"claim_of_balance", to_string(solution.claim_of_balance)}};
+  if (solution.width) {
+    json["width"] = *solution.width;
+    json["view_factors_computed_again"] = solution.computed_again;
+  }
   json["reasons_against_balance"] = solution.reasons_against_balance;
   json["channels"] = nlohmann::ordered_json::object();
   for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
@@ -276,6 +293,7 @@ void check_outputs(const RadiosityArguments& args) {
     jobs::require_free(args.kept_factors(), args.existing());
     before.push_back({"the view factors of -o", args.kept_factors()});
     before.push_back({"their journal", jobs::journal_of(args.kept_factors())});
+    before.push_back({"those computed again", jobs::journal_of(args.kept_again())});
   }
   check_output_files({{"--vtk", args.vtk}}, before, args.force);
 }
@@ -318,7 +336,7 @@ void print(const RadiosityArguments& args, const Scene& scene, const Solution& s
   } else if (args.json) {
     print_json(args, scene, solution);
   } else if (args.csv) {
-    std::cout << csv_text(scene, solution, args.factors, args.origin());
+    std::cout << csv_text(scene, solution, args.options.factors, args.origin());
   } else {
     print_for_people(scene, solution, balanced);
     if (!args.output.empty()) std::cout << "Radiosities: " << text::printable(args.output) << '\n';
@@ -349,14 +367,9 @@ void require_matrix_of(const Scene& scene, const matrix::Table& table) {
   const bool is_of_scene = std::ranges::any_of(table.header, [&](const std::string& line) {
     return line.starts_with(std::string(kSceneHash) + scene.hash() + ';');
   });
-  if (!is_of_scene) {
-    text::refuse(std::filesystem::path(table.file), "holds the view factors of another scene",
-                 "its head has another hash", "give the same scene, with the same --divide, --two-sided and --patches");
-  }
-  if (!table.back.empty() && !table.open.empty()) return;
-  text::refuse(std::filesystem::path(table.file), "has no columns (back) and (open)",
-               "the balance needs what meets backs and what is open",
-               "compute it by exactff matrix SCENE --backs --to all,sky -o FILE");
+  if (is_of_scene) return;
+  text::refuse(std::filesystem::path(table.file), "holds the view factors of another scene",
+               "its head has another hash", "give the same scene, with the same --divide, --two-sided and --patches");
 }
 
 // Nothing if it was interrupted.
@@ -377,7 +390,7 @@ std::optional<matrix::Matrix> view_factors_of(const RadiosityArguments& args, co
                                               const std::vector<Selection>& patches, const Hooks& hooks,
                                               ViewFactorOptions& options) {
   if (args.matrix.empty()) {
-    const matrix::Options of_matrix = radiosity::matrix_options({options, args.threads}, patches.size());
+    const matrix::Options of_matrix = radiosity::matrix_options(args.options);
     if (!args.keeps_work()) return matrix::compute(scene, patches, patches, of_matrix, hooks);
     return kept_view_factors(args,
                              {.scene = &scene, .from = patches, .to = patches, .options = of_matrix, .shard = {}});
@@ -385,24 +398,54 @@ std::optional<matrix::Matrix> view_factors_of(const RadiosityArguments& args, co
   const matrix::Table table = matrix::read_csv(args.matrix);
   require_matrix_of(scene, table);
   options = options_of(table);
-  const matrix::Options with_all{.factors = options, .backs = true, .open = true};
-  return matrix::read({.scene = &scene, .from = patches, .to = patches, .options = with_all, .shard = {}}, args.matrix);
+  const matrix::Options as_there{.factors = options, .backs = !table.back.empty(), .open = !table.open.empty()};
+  return matrix::read({.scene = &scene, .from = patches, .to = patches, .options = as_there, .shard = {}}, args.matrix);
 }
 
-void set_variation(const RadiosityArguments& args, const Scene& scene, Solution& solution, const Hooks& hooks) {
+// Solves, and computes view factors again where a width is wanted.
+Solution solve(const RadiosityArguments& args, const Scene& scene, matrix::Matrix& matrix, const Hooks& hooks) {
+  std::optional<jobs::Journal> journal;
+  if (args.keeps_work() && args.options.width) {
+    journal.emplace(jobs::journal_of(args.kept_again()), args.existing());
+  }
+  Solution solution = radiosity::solve_within(scene, matrix, args.options, journal ? &*journal : nullptr, hooks);
+  radiosity::set_variation(scene, solution, args.options.threads, hooks);
+  return solution;
+}
+
+Solution solve_or_tell_what_is_kept(const RadiosityArguments& args, const Scene& scene, matrix::Matrix& matrix,
+                                    const Hooks& hooks) {
   try {
-    radiosity::set_variation(scene, solution, args.threads, hooks);
+    return solve(args, scene, matrix, hooks);
   } catch (const Cancelled&) {
     if (args.keeps_work()) {
-      std::cerr << "note: all view factors are kept in " + text::printable(args.kept_factors()) +
+      std::cerr << "note: all finished view factors are kept beside " + text::printable(args.output) +
                        "; to continue, run the same command with --resume\n";
     }
     throw;
   }
 }
 
+// Whether the bounds are as narrow as is wanted.
+void warn_of_wide_bounds(const RadiosityArguments& args, const Scene& scene, const Solution& solution,
+                         const matrix::Matrix& matrix) {
+  const radiosity::Widest widest = radiosity::widest_bounds(solution);
+  if (!solution.is_bounded() || widest.share <= *solution.width) return;
+  const auto is_at_limit = [](const ViewFactor& f) { return f.limit != Limit::kNone; };
+  const auto limited = static_cast<std::uint64_t>(std::ranges::count_if(matrix.factors.entries, is_at_limit));
+  print_warnings(std::vector<Problem>{
+      {.what = "the bounds of '" + scene.name_of(solution.patches[widest.patch]) + "' in " +
+               std::string(kChannelNames[widest.channel]) + " are " + text::short_number(widest.share, 2) +
+               " of the brightest radiosity wide, the widest of all, and not " + text::shortest(*solution.width),
+       .why = text::counted(limited, "view factor is", "view factors are") + " as narrow as " +
+              text::counted(args.options.factors.budget, "cell") + ", or roundings, allow",
+       .suggestion = "give more by --budget, or ask for less by --width"}});
+}
+
 int run(const RadiosityArguments& given) {
   RadiosityArguments args = given;
+  if (args.options.width) args.options.factors.accuracy = radiosity::accuracy_for(*args.options.width);
+  if (args.accuracy) args.options.factors.accuracy = *args.accuracy;
   check_outputs(args);
   const Scene scene = load(args.scene, args.two_sided);
   const std::vector<Selection> patches = radiosity::patches_of(scene);
@@ -412,14 +455,23 @@ int run(const RadiosityArguments& given) {
   }
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
-  const std::optional<matrix::Matrix> matrix = view_factors_of(args, scene, patches, hooks, args.factors);
+  std::optional<matrix::Matrix> matrix = view_factors_of(args, scene, patches, hooks, args.options.factors);
   if (!matrix) return exit_code_of_interruption();
-  Solution solution = radiosity::solve(scene, *matrix);
-  set_variation(args, scene, solution, hooks);
+  const Solution solution = solve_or_tell_what_is_kept(args, scene, *matrix, hooks);
   bar.clear();
-  print_warnings(problems_of_width(scene, matrix::Matrix{matrix->factors, {}, {}}, args.factors));
-  if (!args.output.empty()) write_whole_file(args.output, csv_text(scene, solution, args.factors, args.origin()));
-  if (args.keeps_work()) std::filesystem::remove(args.kept_factors());
+  if (solution.width) {
+    warn_of_wide_bounds(args, scene, solution, *matrix);
+  } else {
+    matrix->back.clear();
+    matrix->open.clear();
+    print_warnings(problems_of_width(scene, *matrix, args.options.factors));
+  }
+  if (!args.output.empty())
+    write_whole_file(args.output, csv_text(scene, solution, args.options.factors, args.origin()));
+  if (args.keeps_work()) {
+    std::filesystem::remove(args.kept_factors());
+    std::filesystem::remove(jobs::journal_of(args.kept_again()));
+  }
   if (!args.vtk.empty()) write_vtk(scene, solution, args.vtk);
   const bool balanced = test_balance(solution);
   warn_of_no_bound(solution);
@@ -454,20 +506,29 @@ Command add_radiosity(CLI::App& app) {
   args->scene.add_divide_to(*command);
   command->add_option("--two-sided", args->two_sided, kTwoSidedHelp)->type_name("NAME");
   CLI::Option* accuracy =
-      command->add_option("--accuracy", args->factors.accuracy, "Largest width of a view factor, for F_ij and for F_ji")
-          ->capture_default_str();
-  CLI::Option* budget = command->add_option("--budget", args->factors.budget, kBudgetHelp)
+      command->add_option("--accuracy", args->accuracy, "Largest width of a view factor, for F_ij and for F_ji")
+          ->default_str("1e-06, or four times --width");
+  CLI::Option* budget = command->add_option("--budget", args->options.factors.budget, kBudgetHelp)
                             ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
                             ->capture_default_str();
-  const ClaimOptions claims = add_claim(*command, args->factors.certify);
+  command
+      ->add_option("--width", args->options.width,
+                   "Largest width of the bounds of a radiosity, as a share of the brightest of its channel")
+      ->type_name("FLOAT");
+  CLI::Option* backs =
+      command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces, for the balance");
+  const ClaimOptions claims = add_claim(*command, args->options.factors.certify);
   command->add_option("--matrix", args->matrix, "Take the view factors from this file of exactff matrix")
       ->type_name("FILE")
       ->excludes(accuracy)
       ->excludes(budget)
+      ->excludes(backs)
       ->excludes(claims.claim)
       ->excludes(claims.certify);
   add_outputs(*command, *args);
-  command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
+  command
+      ->add_option("--threads", args->options.threads,
+                   "Number of threads (default: all); it does not affect the values")
       ->check(CLI::Range(0, 1024));
   return {command, [args] { return run(*args); }};
 }

@@ -104,15 +104,19 @@ std::vector<Sum> clipped_row_sums(const Scene& scene, const Matrix& matrix) {
   return sums;
 }
 
-std::vector<std::string> reasons_against_one(const Scene& scene, const Matrix& matrix) {
+std::vector<std::string> reasons_against_one(const Scene& scene, const Factors& factors, Surroundings known) {
   std::vector<std::string> reasons;
-  if (!has_every_patch(scene, matrix.factors.to)) reasons.emplace_back("not every patch is a column, once");
-  if (matrix.back.empty()) reasons.emplace_back("what meets backs is not computed");
-  if (matrix.open.empty()) reasons.emplace_back("what is open is not computed");
+  if (!has_every_patch(scene, factors.to)) reasons.emplace_back("not every patch is a column, once");
+  if (!known.back) reasons.emplace_back("what meets backs is not computed");
+  if (!known.open) reasons.emplace_back("what is open is not computed");
   if (!scene.transparent().empty()) reasons.emplace_back("some faces are transparent");
-  if (has_bent_rows(scene, matrix.factors.from)) reasons.emplace_back("some faces of the rows are not planar");
+  if (has_bent_rows(scene, factors.from)) reasons.emplace_back("some faces of the rows are not planar");
   if (have_fronts_in_common(scene)) reasons.emplace_back("fronts of different patches overlap in one plane");
   return reasons;
+}
+
+std::vector<std::string> reasons_against_one(const Scene& scene, const Matrix& matrix) {
+  return reasons_against_one(scene, matrix.factors, {.back = !matrix.back.empty(), .open = !matrix.open.empty()});
 }
 
 }  // namespace exactff::matrix

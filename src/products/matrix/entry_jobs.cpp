@@ -89,12 +89,6 @@ class AtWork {
 };
 thread_local const AtWork* AtWork::of_thread = nullptr;
 
-ViewFactorOptions options_beside(const Options& options) {
-  ViewFactorOptions result = options.factors;
-  result.budget = std::min(result.budget, options.budget_beside);
-  return result;
-}
-
 }  // namespace
 
 EntryJobs::EntryJobs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
@@ -110,11 +104,11 @@ EntryJobs::EntryJobs(const Scene& scene, std::span<const Selection> from, std::s
     for (const auto& patch : {with_backs_->backs, with_backs_->both, with_backs_->fronts}) {
       if (patch) parts_.push_back(*patch);
     }
-    to_backs_.emplace(with_backs_->scene, of_any_scene(from), parts_, options_beside(options));
+    to_backs_.emplace(with_backs_->scene, of_any_scene(from), parts_, options.factors);
   }
   if (options.open) {
     with_sky_ = with_sky(scene);
-    to_sky_.emplace(with_sky_->scene, of_any_scene(from), std::span(&with_sky_->sky, 1), options_beside(options),
+    to_sky_.emplace(with_sky_->scene, of_any_scene(from), std::span(&with_sky_->sky, 1), options.factors,
                     view_factors::Columns::kSurroundings);
   }
 }

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "exactff/matrix.h"
+#include "matrix/csv.h"
 
 namespace exactff::matrix {
 
@@ -14,6 +16,10 @@ namespace exactff::matrix {
 // row_sums(), but not above 1 where that is proved: a ray meets the front of one patch, a back or nothing first, so the
 // shares of different columns do not overlap, unless fronts do, faces are transparent or rows are bent.
 [[nodiscard]] std::vector<Sum> clipped_row_sums(const Scene& scene, const Matrix& matrix);
+
+// reasons_against_one(), if `known` of the two is known besides the factors.
+[[nodiscard]] std::vector<std::string> reasons_against_one(const Scene& scene, const Factors& factors,
+                                                           Surroundings known);
 
 // Whether an entry of the row, or its back or open, is estimated.
 [[nodiscard]] bool has_estimates(const Matrix& matrix, std::size_t row);

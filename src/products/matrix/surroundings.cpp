@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <string>
 
+#include "kernel/plane_through.h"
 #include "kernel/poll.h"
 #include "matrix/coplanar.h"
 #include "scene/scene_copy.h"
 #include "text/refuse.h"
+#include "view_factors/pairs.h"
 #include "visibility/source_plane.h"
 
 namespace exactff::matrix {
@@ -125,6 +128,56 @@ SceneWithSky with_sky(const Scene& scene) {
     copy.add_face(sky, {corners[far], corners[far + two], corners[far + one + two], corners[far + one]});
   }
   return {copy.take(), sky};
+}
+
+namespace {
+
+struct Sight {
+  const Piece* piece;
+  kernel::PlaneThrough plane;
+};
+
+std::vector<Sight> sights_of(const Scene& scene, const Selection& selection) {
+  std::vector<Sight> sights;
+  const auto vertex = [&](std::uint32_t v) -> const Vec3& { return scene.vertices()[v]; };
+  for (const FaceId face : scene.faces_of(selection)) {
+    for (const Piece& piece : scene.pieces_of(face)) {
+      sights.push_back({&piece, {vertex(piece.frame[0]), vertex(piece.frame[1]), vertex(piece.frame[2])}});
+    }
+  }
+  return sights;
+}
+
+// False if all of `to` lies behind the plane of `from`, or in it.
+bool reaches_before(const Scene& scene, const Sight& from, const Sight& to) {
+  return std::ranges::any_of(scene.corners(*to.piece),
+                             [&](std::uint32_t v) { return from.plane.side_of(scene.vertices()[v]) > 0; });
+}
+
+}  // namespace
+
+// A point of a piece sees the front of another only if each reaches before the plane of the other. The backs are fronts
+// of the scene that is made for them.
+ProvedZeros proved_zeros(const Scene& scene, std::span<const Selection> from) {
+  const SceneWithBacks made = with_backs(scene);
+  std::vector<Sight> backs;
+  for (const std::optional<Selection>& patch : {made.backs, made.both}) {
+    if (patch) std::ranges::copy(sights_of(made.scene, *patch), std::back_inserter(backs));
+  }
+  const view_factors::Pairs rows(scene, from, {}, {});
+  ProvedZeros zeros;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    kernel::poll();
+    const std::vector<Sight> own = sights_of(made.scene, {from[i].patch, from[i].face});
+    const auto may_see = [&](const Sight& a, const Sight& b) {
+      return reaches_before(made.scene, a, b) && reaches_before(made.scene, b, a);
+    };
+    zeros.back.push_back(std::ranges::none_of(own, [&](const Sight& one) {
+      return std::ranges::any_of(backs, [&](const Sight& back) { return may_see(one, back); });
+    }));
+    zeros.open.push_back(rows.is_enclosed(i));
+  }
+  return zeros;
 }
 
 bool have_fronts_in_common(const Scene& scene) {

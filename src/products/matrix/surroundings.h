@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "exactff/scene.h"
@@ -23,6 +24,13 @@ struct SceneWithSky {
 };
 // Throws InputError if the scene is so large that there is no double to put a corner at.
 [[nodiscard]] SceneWithSky with_sky(const Scene& scene);
+
+// What is proved of patches without a factor: that no point of one sees a back, or anything open. False does not mean
+// that it does.
+struct ProvedZeros {
+  std::vector<bool> back, open;  // for each of the patches
+};
+[[nodiscard]] ProvedZeros proved_zeros(const Scene& scene, std::span<const Selection> from);
 
 // Whether fronts of different patches overlap in one plane.
 [[nodiscard]] bool have_fronts_in_common(const Scene& scene);

@@ -17,6 +17,9 @@
 // So each of the three is at most emitted less the others' lower bounds (3 or 4), and at least emitted less the others'
 // upper bounds (4). 3 and 4 need reciprocity and rows that add up to 1; Solution::reasons_against_balance is empty
 // then.
+//
+// back_i and open_i need not be computed: where a row adds up to 1, back_i + open_i = 1 - sum_j F_ij, its loss, and
+// each of the two is at most that. It is 0 where that is proved (ProvedZeros), and the loss where the other is 0.
 #pragma once
 
 #include <vector>
@@ -33,9 +36,16 @@ struct Laws {
   bool is_finite = false;             // B is
 };
 
+// Of what leaves a patch, the shares that meet backs, leave, or do either.
+struct Losses {
+  std::vector<matrix::Sum> back, open, lost;
+  bool is_possible = true;  // the bounds of every row hold 1, as far as it must add up to 1
+};
+[[nodiscard]] Losses losses_of(const Scene& scene, const matrix::Matrix& matrix, bool adds_up);
+
 // Sums of products, rounded outward, clipped by 1 and 2. The channel has its radiosities and irradiances.
-[[nodiscard]] Balance sums_of(const Channel& channel, const System& system, const matrix::Matrix& matrix,
-                              const Laws& laws);
+[[nodiscard]] Balance sums_of(const Channel& channel, const System& system, const std::vector<double>& areas,
+                              const Losses& losses, const Laws& laws);
 
 // Whether the sums contradict 4: then some bound does not hold.
 [[nodiscard]] bool is_contradiction(const Balance& sums);

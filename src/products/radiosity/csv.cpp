@@ -33,6 +33,12 @@ std::string origin_lines(const Origin& origin) {
   return lines;
 }
 
+std::string words_of_width(const Solution& solution) {
+  if (!solution.width) return {};
+  return ", " + text::counted(solution.computed_again, "entry", "entries") + " again for bounds of " +
+         text::shortest(*solution.width) + " of the brightest";
+}
+
 bool has_variation(const Solution& solution) { return !solution.channels.front().variation.empty(); }
 
 }  // namespace
@@ -43,8 +49,8 @@ std::string csv_text(const Scene& scene, const Solution& solution, const ViewFac
                      " radiosity: what leaves each patch after all bounces, in the unit of Ke; areas in the scene's "
                      "unit squared\n# " +
                      std::string(kSceneHash) + scene.hash() + "; view factors: accuracy " +
-                     text::shortest(options.accuracy) + ", budget " + std::to_string(options.budget) + " cells\n" +
-                     origin_lines(origin) +
+                     text::shortest(options.accuracy) + ", budget " + std::to_string(options.budget) + " cells" +
+                     words_of_width(solution) + '\n' + origin_lines(origin) +
                      "patch,channel,radiosity,lower,upper,irradiance,irradiance_lower,irradiance_upper,claim,area" +
                      (has_variation(solution) ? ",variation\n" : "\n");
   for (std::size_t i = 0; i < solution.patches.size(); ++i) {

@@ -6,7 +6,9 @@
 
 #include "exactff/radiosity.h"
 #include "kernel/float_environment.h"
+#include "matrix/row_facts.h"
 #include "radiosity/balance.h"
+#include "radiosity/narrowing.h"
 #include "radiosity/system.h"
 #include "scene/scene_data.h"
 #include "text/phrases.h"
@@ -44,11 +46,8 @@ void require_one_material(const Scene& scene, const Selection& patch, std::vecto
 void require_complete(const Scene& scene, const matrix::Matrix& matrix) {
   const matrix::Factors& all = matrix.factors;
   const std::vector<Selection> patches = patches_of(scene);
-  if (all.from == patches && all.to == patches && all.entries.size() == patches.size() * patches.size() &&
-      matrix.back.size() == patches.size() && matrix.open.size() == patches.size()) {
-    return;
-  }
-  throw std::invalid_argument("radiosity::solve needs the factors between all patches, with back and open");
+  if (all.from == patches && all.to == patches && all.entries.size() == patches.size() * patches.size()) return;
+  throw std::invalid_argument("radiosity::solve needs the factors between all patches");
 }
 
 Factors factors_of(const matrix::Factors& all) {
@@ -112,24 +111,24 @@ void set_unbounded(Channel& channel, const System& system, const Numbers& value)
 }
 
 // Sums that are a contradiction are kept as they are, to show it.
-void set_balance(Channel& channel, const System& system, const matrix::Matrix& matrix, bool adds_up) {
+void set_balance(Channel& channel, const System& system, const std::vector<double>& areas, const Losses& losses,
+                 bool adds_up) {
   const bool loses = std::ranges::all_of(system.reflectances, [](double rho) { return rho <= 1.0; });
   const Laws laws{.loses_at_each_bounce = loses, .adds_up = adds_up, .is_finite = channel.is_bounded()};
-  const Balance sums = sums_of(channel, system, matrix, laws);
-  channel.is_balanced = !laws.is_finite || !is_contradiction(sums);
+  const Balance sums = sums_of(channel, system, areas, losses, laws);
+  channel.is_balanced = losses.is_possible && (!laws.is_finite || !is_contradiction(sums));
   channel.balance = channel.is_balanced ? clip(sums, laws) : sums;
 }
 
-Channel solve_channel(const Scene& scene, const matrix::Matrix& matrix, const System& system, bool adds_up) {
+Channel solve_channel(const Scene& scene, const std::vector<Selection>& patches, const System& system) {
   const SolutionBounds bounds = bounds_of(system);
   Channel channel;
   if (bounds.upper.empty()) {
-    channel.no_bound = why_unbounded(scene, matrix.factors.from, system.reflectances);
+    channel.no_bound = why_unbounded(scene, patches, system.reflectances);
     set_unbounded(channel, system, bounds.value);
   } else {
     set_bounded(channel, system, bounds);
   }
-  set_balance(channel, system, matrix, adds_up);
   return channel;
 }
 
@@ -168,6 +167,12 @@ std::vector<Selection> patches_of(const Scene& scene) {
   return patches;
 }
 
+System system_of(const Scene& scene, const matrix::Factors& factors, std::size_t channel) {
+  System system{factors_of(factors), {}, {}};
+  set_colours(scene, factors.from, kChannels[channel], system);
+  return system;
+}
+
 Solution solve(const Scene& scene, const matrix::Matrix& matrix) {
   const kernel::StandardArithmetic arithmetic;
   require_complete(scene, matrix);
@@ -176,32 +181,33 @@ Solution solve(const Scene& scene, const matrix::Matrix& matrix) {
   for (std::size_t i = 0; i < solution.patches.size(); ++i) {
     solution.areas.push_back(matrix.factors.at(i, 0).area_from);
   }
-  solution.reasons_against_balance = reasons_against_one(scene, matrix);
+  solution.reasons_against_balance =
+      matrix::reasons_against_one(scene, matrix.factors, {.back = true, .open = true});  // or what is left
   const bool adds_up = solution.reasons_against_balance.empty();
+  solution.lost_is_rest = matrix.back.empty() || matrix.open.empty();
+  const Losses losses = losses_of(scene, matrix, adds_up);
   System system{factors_of(matrix.factors), {}, {}};
   for (std::size_t c = 0; c < kChannels.size(); ++c) {
     const System before{{}, system.reflectances, system.emissions};
     set_colours(scene, solution.patches, kChannels[c], system);
     const bool is_same = c > 0 && before.reflectances == system.reflectances && before.emissions == system.emissions;
-    solution.channels[c] = is_same ? solution.channels[c - 1] : solve_channel(scene, matrix, system, adds_up);
+    Channel& channel = solution.channels[c];
+    channel = is_same ? solution.channels[c - 1] : solve_channel(scene, solution.patches, system);
+    if (!is_same) set_balance(channel, system, solution.areas, losses, adds_up);
   }
   set_claims(matrix, solution);
   return solution;
 }
 
-matrix::Options matrix_options(const Options& options, std::size_t patches) {
-  constexpr std::size_t kBudgetOfBalance = 40000, kLeastOfPatch = 16, kMostOfPatch = 2000;
-  const std::size_t of_patch = kBudgetOfBalance / std::max<std::size_t>(patches, 1);
-  return {.factors = options.factors,
-          .backs = true,
-          .open = true,
-          .budget_beside = std::clamp(of_patch, kLeastOfPatch, kMostOfPatch),
-          .threads = options.threads};
+matrix::Options matrix_options(const Options& options) {
+  if (options.width) require_width(*options.width);
+  return {.factors = options.factors, .backs = options.backs, .threads = options.threads};
 }
 
 Solution solve(const Scene& scene, const Options& options, const Hooks& hooks) {
   const std::vector<Selection> patches = patches_of(scene);
-  return solve(scene, matrix::compute(scene, patches, patches, matrix_options(options, patches.size()), hooks));
+  matrix::Matrix matrix = matrix::compute(scene, patches, patches, matrix_options(options), hooks);
+  return solve_within(scene, matrix, options, nullptr, hooks);
 }
 
 std::string_view claim_text(const Solution& solution, const Channel& channel) {

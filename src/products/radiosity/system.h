@@ -30,6 +30,9 @@
 #include <span>
 #include <vector>
 
+#include "exactff/matrix.h"
+#include "exactff/scene.h"
+
 namespace exactff::radiosity {
 
 // Of a view factor: 0 <= lower <= value <= upper.
@@ -73,6 +76,9 @@ struct System {
 // The sum over a row of F x for L <= F <= U, x >= 0, rounded outward. A sum of zeros is 0.
 [[nodiscard]] double sum_below(std::span<const Entry> row, const Numbers& x);  // L x
 [[nodiscard]] double sum_above(std::span<const Entry> row, const Numbers& x);  // U x
+
+// Of a channel (kChannelNames).
+[[nodiscard]] System system_of(const Scene& scene, const matrix::Factors& factors, std::size_t channel);
 
 struct SolutionBounds {
   Numbers value;         // of the system with the entries' values, an estimate; empty: the solver found none

@@ -77,15 +77,9 @@ double processor_seconds_since(std::clock_t start) {
   return static_cast<double>(std::clock() - start) / static_cast<double>(CLOCKS_PER_SEC);
 }
 
-// Without what only the balance needs: nothing is known of backs and what is open.
 radiosity::Solution solution_of(const Scene& scene, const MeshingSize& size, int threads, const Hooks& hooks) {
-  const std::vector<Selection> patches = radiosity::patches_of(scene);
   const ViewFactorOptions factors{.accuracy = size.accuracy, .budget = size.budget};
-  matrix::Matrix matrix = matrix::compute(scene, patches, patches, {.factors = factors, .threads = threads}, hooks);
-  const ViewFactor unknown{.value = 0.5, .upper = 1.0, .claim = Claim::kEstimated, .accurate = false};
-  matrix.back.assign(patches.size(), unknown);
-  matrix.open.assign(patches.size(), unknown);
-  return radiosity::solve(scene, matrix);
+  return radiosity::solve(scene, {.factors = factors, .threads = threads}, hooks);
 }
 
 render::View view_of(const MeshingScene& place, const MeshingSize& size) {

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -16,6 +18,7 @@
 
 #include "exactff/scene_files.h"
 #include "generate/plain_scene.h"
+#include "radiosity/narrowing.h"
 #include "support/program.h"
 
 namespace exactff::radiosity {
@@ -185,8 +188,52 @@ TEST(Radiosity, NeedsTheFactorsBetweenAllPatches) {
   const std::vector<Selection> patches = patches_of(scene);
   const matrix::Options options{.factors = {.accuracy = 0.1}, .backs = true, .open = true};
   EXPECT_THROW((void)solve(scene, matrix::compute(scene, patches, {&patches[0], 1}, options)), std::invalid_argument);
-  EXPECT_THROW((void)solve(scene, matrix::compute(scene, patches, patches, {.factors = {.accuracy = 0.1}})),
-               std::invalid_argument);
+}
+
+// Nothing is open in a closed room, no back is seen on the inside of a convex one. Both follow without a factor.
+TEST(Radiosity, TellsWhatIsLostWhereOneWayIsProvedToBeNone) {
+  const Balance closed = solution_of(cube({0.5, 0.5, 0.5}, {1, 1, 1}), 1e-3).channels[0].balance;
+  for (const matrix::Sum& part : {closed.lost, closed.back, closed.open}) EXPECT_EQ(part.upper, 0.0);
+  const Balance open = solution_of(plates(), 1e-6).channels[0].balance;
+  EXPECT_EQ(open.back.upper, 0.0);
+  EXPECT_GT(open.open.lower, 1.0);
+  EXPECT_LE(open.open.upper - open.open.lower, 1e-4);
+  EXPECT_EQ(open.open.upper, open.lost.upper);
+}
+
+// A floor under a roof whose front is above.
+TEST(Radiosity, TellsBacksFromTheSkyOnRequest) {
+  PlainScene shed;
+  add(shed, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {}, {1, 1, 1});
+  add(shed, "roof", {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, {}, {});
+  const Scene scene = generate::build(shed);
+  const Balance together = solve(scene, {.factors = {.accuracy = 1e-4}}).channels[0].balance;
+  EXPECT_NEAR(together.lost.lower, 1.0, 1e-12);
+  EXPECT_EQ(together.back.lower, 0.0);
+  EXPECT_GE(together.back.upper, kOpposite);
+  const Balance apart = solve(scene, {.factors = {.accuracy = 1e-4}, .backs = true}).channels[0].balance;
+  EXPECT_NEAR(apart.back.lower, kOpposite, 1e-3);
+  EXPECT_NEAR(apart.open.upper, 1.0 - kOpposite, 1e-3);
+}
+
+// Only the upper half of the wall is before the floor.
+TEST(Radiosity, DoesNotRuleOutBacksOfWhichAPartIsBefore) {
+  PlainScene scene;
+  add(scene, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {}, {1, 1, 1});
+  add(scene, "wall", {{1, 0, -1}, {1, 1, -1}, {1, 1, 1}, {1, 0, 1}}, {}, {});
+  const Balance balance = solution_of(scene, 1e-3).channels[0].balance;
+  EXPECT_GT(balance.back.upper, 0.2);  // two squares with a common edge see 0.2000 of each other
+}
+
+TEST(Radiosity, TheBalanceTestsThatNoRowIsAboveOne) {
+  const Scene scene = generate::build(cube({0.5, 0.5, 0.5}, {1, 1, 1}));
+  const std::vector<Selection> patches = patches_of(scene);
+  matrix::Matrix matrix = matrix::compute(scene, patches, patches, {.factors = {.accuracy = 1e-3}});
+  EXPECT_TRUE(is_balanced(solve(scene, matrix)));
+  for (double ViewFactor::*number : {&ViewFactor::value, &ViewFactor::lower, &ViewFactor::upper}) {
+    matrix.factors.entries[1].*number += 1e-2;
+  }
+  EXPECT_FALSE(is_balanced(solve(scene, matrix)));
 }
 
 // A factor that is wrong breaks the balance.
@@ -224,6 +271,107 @@ TEST(Radiosity, OfAnySizeIsBounded) {
   }
   const Solution solution = solution_of(cube({0.99, 0.99, 0.99}, {1e308, 1e308, 1e308}), 1e-4);
   EXPECT_FALSE(solution.is_bounded());
+}
+
+// --- Bounds of a wanted width ---
+
+// The two plates, and one between them.
+PlainScene three_plates() {
+  PlainScene scene = plates();
+  add(scene, "between", {{0.25, 0.25, 0.5}, {0.75, 0.25, 0.5}, {0.75, 0.75, 0.5}, {0.25, 0.75, 0.5}}, kUpperKd, {});
+  add(scene, "wall", {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}}, kLowerKd, {});
+  return scene;
+}
+
+TEST(RadiosityWidth, OfAFurnaceIsReachedAroundTheKnownValue) {
+  const Scene scene = generate::build(cube({0.5, 0.75, 0.0}, {1, 3, 0.1}));
+  const Options coarse{.factors = {.accuracy = 0.02}}, narrow{.factors = {.accuracy = 0.02}, .width = 2e-3};
+  EXPECT_GT(widest_bounds(solve(scene, coarse)).share, 2e-3);
+  const Solution solution = solve(scene, narrow);
+  EXPECT_LE(widest_bounds(solution).share, 2e-3);
+  EXPECT_GT(solution.computed_again, 0U);
+  for (std::size_t i = 0; i < 6; ++i) {
+    expect_holds(solution.channels[0].radiosity[i], 2.0, 2e-3 * 2.0);
+    expect_holds(solution.channels[1].radiosity[i], 12.0, 2e-3 * 12.0);
+  }
+}
+
+// Too coarse to prove that less light is reflected than arrives.
+TEST(RadiosityWidth, IsReachedFromFactorsThatProveNoBound) {
+  const Scene scene = generate::build(cube({0.95, 0.95, 0.95}, {1, 1, 1}));
+  EXPECT_FALSE(solve(scene, {.factors = {.accuracy = 0.2}}).is_bounded());
+  const Solution solution = solve(scene, {.factors = {.accuracy = 0.2}, .width = 0.05});
+  EXPECT_LE(widest_bounds(solution).share, 0.05);
+  expect_holds(solution.channels[0].radiosity[0], 20.0, 1.0);
+}
+
+TEST(RadiosityWidth, EntriesAreWhatViewFactorGivesWithTheirAccuracy) {
+  const Scene scene = generate::build(three_plates());
+  const std::vector<Selection> patches = patches_of(scene);
+  const Options options{.factors = {.accuracy = 0.5}, .width = 1e-5};
+  const validation::TemporaryDirectory folder;
+  jobs::Journal journal(folder.path() / "again.part", jobs::Existing::kRefuse);
+  matrix::Matrix matrix = matrix::compute(scene, patches, patches, matrix_options(options));
+  const Narrowed narrowed = narrow(scene, matrix, options, &journal, {});
+  std::set<int> halvings;
+  for (std::size_t e = 0; e < matrix.factors.entries.size(); ++e) {
+    halvings.insert(narrowed.halvings[e]);
+    const double accuracy = std::ldexp(0.5, -narrowed.halvings[e]);
+    const ViewFactor &f = matrix.factors.entries[e],
+                     g = view_factor(scene, patches[e / 4], patches[e % 4], {.accuracy = accuracy});
+    EXPECT_EQ(f.value, g.value) << e;
+    EXPECT_EQ(f.lower, g.lower) << e;
+    EXPECT_EQ(f.upper, g.upper) << e;
+    EXPECT_EQ(f.cells, g.cells) << e;
+  }
+  EXPECT_GT(halvings.size(), 2U);
+  EXPECT_LE(widest_bounds(solve(scene, matrix)).share, 1e-5);
+  EXPECT_GT(journal.size(), narrowed.entries / 2) << "some pairs are computed twice";
+}
+
+TEST(RadiosityWidth, DoesNotDependOnThreadsOrInterruptions) {
+  const Scene scene = generate::build(three_plates());
+  const std::vector<Selection> patches = patches_of(scene);
+  Options options{.factors = {.accuracy = 0.1}, .width = 1e-4, .threads = 1};
+  const auto text = [&](const Solution& solution) { return csv_text(scene, solution, options.factors); };
+  const std::string one = text(solve(scene, options));
+  options.threads = 3;
+  EXPECT_EQ(text(solve(scene, options)), one);
+  const validation::TemporaryDirectory folder;
+  const std::filesystem::path file = folder.path() / "again.part";
+  const matrix::Matrix first = matrix::compute(scene, patches, patches, matrix_options(options));
+  {
+    jobs::Journal journal(file, jobs::Existing::kRefuse);
+    matrix::Matrix matrix = first;
+    EXPECT_THROW((void)solve_within(scene, matrix, options, &journal, {{}, [&] { return journal.size() >= 2; }}),
+                 Cancelled);
+  }
+  std::uintmax_t size = 0;
+  for (int again = 0; again < 2; ++again) {
+    jobs::Journal journal(file, jobs::Existing::kResume);
+    EXPECT_GE(journal.size(), 2U);
+    matrix::Matrix matrix = first;
+    EXPECT_EQ(text(solve_within(scene, matrix, options, &journal, {})), one);
+    EXPECT_TRUE(again == 0 || std::filesystem::file_size(file) == size) << "nothing was left to compute";
+    size = std::filesystem::file_size(file);
+  }
+}
+
+TEST(RadiosityWidth, ThatTheBudgetDoesNotAllowIsNotClaimed) {
+  const Scene scene = generate::build(three_plates());
+  const Solution solution = solve(scene, {.factors = {.accuracy = 0.1, .budget = 4}, .width = 1e-6});
+  EXPECT_TRUE(solution.is_bounded());
+  EXPECT_GT(widest_bounds(solution).share, 1e-6);
+  EXPECT_THROW((void)solve(scene, {.width = 0.0}), InputError);
+}
+
+// With work / width: 9 -> 3 costs 3 times 1; nothing is gained from the other.
+TEST(RadiosityWidth, SharesAreThoseOfTheLeastWork) {
+  EXPECT_EQ(shares_left({{9.0, 1.0}, {1.0, 4.0}}, 4.0), (Numbers{1.0 / 3.0, 1.0}));
+  EXPECT_EQ(shares_left({{9.0, 1.0}, {1.0, 4.0}}, 10.0), (Numbers{1.0, 1.0}));
+  const Numbers both = shares_left({{9.0, 1.0}, {1.0, 1.0}}, 1.0);
+  EXPECT_NEAR(9.0 * both[0], 0.75, 1e-15);
+  EXPECT_NEAR(1.0 * both[1], 0.25, 1e-15);
 }
 
 // --- The command ---
@@ -271,9 +419,7 @@ TEST_F(RadiosityCommand, PrintsTheSameNumbersInEveryForm) {
   EXPECT_EQ(json["patches"][1]["blue"]["radiosity"]["upper"], solution.channels[2].radiosity[1].upper);
   EXPECT_EQ(json["channels"]["red"]["balance"]["open"]["lower"], solution.channels[0].balance.open.lower);
   const std::string table = run(scene, {}).output;
-  EXPECT_NE(table.find("Within the bounds, what is emitted is what is absorbed, meets backs or leaves."),
-            std::string::npos)
-      << table;
+  EXPECT_NE(table.find("What is lost is what the view factors of each patch leave of 1"), std::string::npos) << table;
 }
 
 TEST_F(RadiosityCommand, WithoutABoundHasTheExitCodeThree) {
@@ -323,14 +469,14 @@ TEST_F(RadiosityCommand, PrintsABalanceThatIsPossible) {
   box.materials[0].radiosity = {14, 14, 14};
   const auto open = run(write(box), {"--accuracy", "0.2"});
   const auto parts = balance_of(open.output);
-  ASSERT_EQ(parts.size(), 4U) << open.output;
+  ASSERT_EQ(parts.size(), 5U) << open.output;
   EXPECT_EQ(parts[0], std::pair(14.0, 14.0)) << open.output;
   for (const auto& [lower, upper] : parts) {
     EXPECT_GE(lower, 0.0) << open.output;
     EXPECT_LE(lower, upper) << open.output;
     EXPECT_LE(upper, 14.0) << open.output;
   }
-  EXPECT_LT(parts[3].first, parts[3].second);
+  EXPECT_LT(parts[2].first, parts[2].second);
   const auto closed = run(write(cube({1, 1, 1}, {1, 1, 1})), {});  // nothing bounds its radiosities
   for (const auto& [lower, upper] : balance_of(closed.output)) {
     EXPECT_GE(lower, 0.0) << closed.output;
@@ -351,7 +497,7 @@ TEST_F(RadiosityCommand, TakesAFinishedMatrixOfTheSameScene) {
   const auto taken = command({"radiosity", scene, "--matrix", file("m.csv"), "--csv"});
   EXPECT_EQ(taken.exit_code, 0) << taken.output;
   EXPECT_EQ(taken.output, run(scene, {"--csv"}).output);
-  EXPECT_EQ(command({"radiosity", scene, "--matrix", file("less.csv")}).exit_code, 2);
+  EXPECT_EQ(command({"radiosity", scene, "--matrix", file("less.csv"), "--csv"}).output, taken.output);
   EXPECT_EQ(command({"radiosity", scene, "--matrix", file("m.csv"), "--divide", "0.5"}).exit_code, 2);
   EXPECT_EQ(command({"radiosity", scene, "--matrix", file("m.csv"), "--accuracy", "1e-3"}).exit_code, 2);
 }
@@ -389,6 +535,27 @@ TEST_F(RadiosityCommand, ContinuesAfterAnInterruption) {
   again.resize(4);
   again.emplace_back("--csv");
   EXPECT_EQ(validation::text_of(file("s.csv")), validation::run_program(EXACTFF_PROGRAM, again).output);
+}
+
+TEST_F(RadiosityCommand, MakesBoundsOfAWidthOrSaysHowWideTheyAre) {
+  const std::string scene = write(three_plates());
+  const auto command = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"radiosity", scene});
+    return validation::run_program(EXACTFF_PROGRAM, std::move(words));
+  };
+  const auto csv = command({"--width", "1e-3", "--csv"});
+  EXPECT_EQ(csv.exit_code, 0);
+  EXPECT_NE(csv.output.find(" again for bounds of 0.001 of the brightest\n"), std::string::npos) << csv.output;
+  EXPECT_EQ(command({"--width", "1e-3", "-o", file("w.csv")}).exit_code, 0);
+  EXPECT_EQ(validation::text_of(file("w.csv")), csv.output);
+  EXPECT_FALSE(std::filesystem::exists(file("w.csv.again.part")));
+  EXPECT_FALSE(std::filesystem::exists(file("w.csv.factors")));
+  const validation::RunningProgram wide(EXACTFF_PROGRAM, {"radiosity", scene, "--width", "1e-6", "--budget", "4"},
+                                        folder_.path() / "stderr");
+  EXPECT_EQ(wide.wait(), 0);
+  EXPECT_NE(wide.error().find("of the brightest radiosity wide, the widest of all, and not 1e-06"), std::string::npos)
+      << wide.error();
+  EXPECT_EQ(command({"--width", "0"}).exit_code, 2);
 }
 
 // The plate above, alone and turned round, shines from its back.

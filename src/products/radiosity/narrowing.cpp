@@ -1,0 +1,268 @@
+#include "radiosity/narrowing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "kernel/float_environment.h"
+#include "matrix/again.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
+
+namespace exactff::radiosity {
+namespace {
+
+constexpr int kMostRounds = 12;
+constexpr std::uint8_t kMostHalvings = 50;
+constexpr double kFirstSlack = 4.0, kLeastSlack = 0.05;  // of the width that is wanted
+constexpr double kLeastShare = 1.0 / 32.0;               // of the width of an entry, in one round
+constexpr double kLeftToOthers = 0.1;  // of what a row may add, where entries that cannot be narrower use it up
+constexpr int kMostIterations = 200;
+
+// A channel of which narrower bounds are wanted.
+struct Goal {
+  System system;
+  Numbers value;       // B, an estimate
+  double width = 0.0;  // t
+};
+
+// The width of bounds as a share of the brightest radiosity.
+double share_of(double lower, double upper, double brightest) {
+  return upper == lower ? 0.0 : (upper - lower) / brightest;
+}
+
+// Nothing if the bounds are narrow enough, or if nothing is known that would help.
+std::optional<Goal> goal_of(System system, double width) {
+  const SolutionBounds bounds = bounds_of(system);
+  if (bounds.value.empty()) return std::nullopt;
+  Goal goal{std::move(system), bounds.value, 0.0};
+  if (bounds.upper.empty()) {
+    // In a closed room of reflectance 1 there is no B that an estimate could be near.
+    if (std::ranges::max(goal.system.reflectances) >= 1.0) return std::nullopt;
+    goal.width = width * std::ranges::max(goal.value);
+    return goal;
+  }
+  const double brightest = std::ranges::max(bounds.lower);
+  goal.width = width * brightest;
+  for (std::size_t i = 0; i < bounds.lower.size(); ++i) {
+    if (share_of(bounds.lower[i], bounds.upper[i], brightest) > width) return goal;
+  }
+  return std::nullopt;
+}
+
+double weighted_sum(std::span<const Entry> row, const Numbers& x) {
+  double sum = 0.0;
+  for (const Entry& entry : row) sum += entry.value * x[entry.column];
+  return sum;
+}
+
+// Step 1: what each row may add, and what it adds.
+struct Row {
+  double may_add = 0.0, adds = 0.0;
+};
+std::vector<Row> rows_of(const Goal& goal, double slack) {
+  const System& system = goal.system;
+  const double most = slack * goal.width;
+  std::vector<Row> rows(system.factors.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    double sum = 0.0;
+    for (const Entry& entry : system.factors.row(i)) sum += (entry.upper - entry.lower) * goal.value[entry.column];
+    rows[i].adds = system.reflectances[i] * sum;
+  }
+  Numbers d(rows.size(), most);
+  for (int k = 0; k < kMostIterations; ++k) {
+    double change = 0.0;
+    Numbers next;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double from_others = system.reflectances[i] * weighted_sum(system.factors.row(i), d);
+      rows[i].may_add = std::max(most - from_others, 0.0);
+      next.push_back(std::min(most, rows[i].adds + from_others));
+      change = std::max(change, d[i] - next[i]);
+    }
+    d = std::move(next);
+    if (change <= 1e-3 * most) break;
+  }
+  return rows;
+}
+
+class Plan {
+ public:
+  Plan(const matrix::Factors& factors, double accuracy, const std::vector<std::uint8_t>& halvings)
+      : factors_(factors), accuracy_(accuracy), halvings_(halvings), wanted_(halvings) {}
+
+  void add(const Goal& goal, double slack) {
+    const std::vector<Row> rows = rows_of(goal, slack);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (rows[i].adds > rows[i].may_add) narrow_row(goal, i, rows[i].may_add);
+    }
+  }
+
+  // Whether some bounds stay too wide because entries that cannot be narrower make them so.
+  [[nodiscard]] bool is_limited() const { return is_limited_; }
+
+  // By the number of halvings.
+  [[nodiscard]] std::map<std::uint8_t, std::vector<std::size_t>> entries() const {
+    std::map<std::uint8_t, std::vector<std::size_t>> entries;
+    for (std::size_t e = 0; e < wanted_.size(); ++e) {
+      if (wanted_[e] > halvings_[e]) entries[wanted_[e]].push_back(e);
+    }
+    return entries;
+  }
+
+ private:
+  [[nodiscard]] bool can_be_narrower(std::size_t entry) const {
+    return factors_.entries[entry].limit == Limit::kNone && halvings_[entry] < kMostHalvings;
+  }
+
+  void narrow_row(const Goal& goal, std::size_t i, double may_add) {
+    std::vector<std::size_t> entries;
+    std::vector<Share> shares;
+    double most = may_add;
+    for (const Entry& f : goal.system.factors.row(i)) {
+      const double adds = goal.system.reflectances[i] * (f.upper - f.lower) * goal.value[f.column];
+      if (!(adds > 0.0)) continue;
+      const std::size_t entry = i * factors_.to.size() + f.column;
+      if (can_be_narrower(entry)) {
+        entries.push_back(entry);
+        shares.push_back({adds, static_cast<double>(std::max<std::size_t>(factors_.entries[entry].cells, 1))});
+      } else {
+        most -= adds;
+      }
+    }
+    is_limited_ = is_limited_ || most < kLeftToOthers * may_add;
+    const Numbers left = shares_left(shares, std::max(most, kLeftToOthers * may_add));
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      if (left[k] < 1.0) want(entries[k], left[k]);
+    }
+  }
+
+  void want(std::size_t entry, double share) {
+    const ViewFactor& f = factors_.entries[entry];
+    const double halvings = std::ceil(std::log2(accuracy_ / (std::max(share, kLeastShare) * (f.upper - f.lower))));
+    const double most = kMostHalvings, least = halvings_[entry] + 1.0;
+    wanted_[entry] = std::max(wanted_[entry], static_cast<std::uint8_t>(std::clamp(halvings, least, most)));
+  }
+
+  const matrix::Factors& factors_;
+  const double accuracy_;
+  const std::vector<std::uint8_t>& halvings_;
+  std::vector<std::uint8_t> wanted_;
+  bool is_limited_ = false;
+};
+
+std::vector<Goal> goals_of(const Scene& scene, const matrix::Matrix& matrix, double width) {
+  std::vector<Goal> goals;
+  for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
+    System system = system_of(scene, matrix.factors, c);
+    const auto is_same = [&](const Goal& goal) {
+      return goal.system.reflectances == system.reflectances && goal.system.emissions == system.emissions;
+    };
+    if (std::ranges::any_of(goals, is_same)) continue;
+    std::optional<Goal> goal = goal_of(std::move(system), width);
+    if (goal) goals.push_back(std::move(*goal));
+  }
+  return goals;
+}
+
+std::map<std::uint8_t, std::vector<std::size_t>> entries_of(const std::vector<Goal>& goals,
+                                                            const matrix::Factors& factors, double accuracy,
+                                                            const std::vector<std::uint8_t>& halvings) {
+  for (double slack = kFirstSlack; slack >= kLeastSlack; slack *= 0.5) {
+    Plan plan(factors, accuracy, halvings);
+    for (const Goal& goal : goals) plan.add(goal, slack);
+    auto entries = plan.entries();
+    if (!entries.empty() || plan.is_limited()) return entries;
+  }
+  return {};
+}
+
+}  // namespace
+
+Numbers shares_left(const std::vector<Share>& shares, double most) {
+  std::vector<std::size_t> order(shares.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
+    const double x = shares[a].added * shares[b].work, y = shares[b].added * shares[a].work;
+    return x > y || (x == y && a < b);
+  });
+  double rest = 0.0, roots = 0.0;
+  for (const Share& share : shares) rest += share.added;
+  Numbers left(shares.size(), 1.0);
+  if (rest <= most) return left;
+  double limit = 0.0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const Share& share = shares[order[k]];
+    rest -= share.added;
+    roots += std::sqrt(share.work * share.added);
+    limit = (most - rest) / roots;
+    const bool is_last = k + 1 == order.size();
+    if (limit > 0.0 && (is_last || shares[order[k + 1]].added <= limit * limit * shares[order[k + 1]].work)) {
+      break;
+    }
+  }
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    left[k] = std::min(1.0, limit * std::sqrt(shares[k].work / shares[k].added));
+  }
+  return left;
+}
+
+void require_width(double width) {
+  if (width > 0.0 && std::isfinite(width)) return;
+  text::refuse("the width of bounds is " + text::shortest(width), "it is a share of the brightest radiosity",
+               "give a positive number, for example 1e-3");
+}
+
+double accuracy_for(double width) { return std::min(0.5, 4.0 * width); }
+
+Narrowed narrow(const Scene& scene, matrix::Matrix& matrix, const Options& options, jobs::Journal* journal,
+                const Hooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
+  require_width(*options.width);
+  Narrowed result{std::vector<std::uint8_t>(matrix.factors.entries.size()), 0};
+  const double accuracy = options.factors.accuracy;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const auto entries = entries_of(goals_of(scene, matrix, *options.width), matrix.factors, accuracy, result.halvings);
+    if (entries.empty()) break;
+    matrix::AgainHooks with{hooks, journal, 0, 0, options.threads};
+    for (const auto& [halvings, of_accuracy] : entries) with.total += of_accuracy.size();
+    // The most accurate first: transposes of these need not be computed less accurately before.
+    for (auto level = entries.rbegin(); level != entries.rend(); ++level) {
+      const std::uint8_t halvings = level->first;
+      matrix::Again again{options.factors, level->second};
+      again.factors.accuracy = std::ldexp(accuracy, -halvings);
+      std::erase_if(again.entries, [&](std::size_t entry) { return result.halvings[entry] >= halvings; });
+      matrix::compute_again(scene, again, with, matrix.factors,
+                            [&](std::size_t entry) { result.halvings[entry] = halvings; });
+      with.done += level->second.size();
+    }
+  }
+  result.entries = static_cast<std::size_t>(std::ranges::count_if(result.halvings, [](auto h) { return h > 0; }));
+  return result;
+}
+
+Solution solve_within(const Scene& scene, matrix::Matrix& matrix, const Options& options, jobs::Journal* journal,
+                      const Hooks& hooks) {
+  const std::size_t again = options.width ? narrow(scene, matrix, options, journal, hooks).entries : 0;
+  Solution solution = solve(scene, matrix);
+  solution.width = options.width;
+  solution.computed_again = again;
+  return solution;
+}
+
+Widest widest_bounds(const Solution& solution) {
+  Widest widest;
+  for (std::size_t c = 0; c < solution.channels.size(); ++c) {
+    const std::vector<BoundedValue>& all = solution.channels[c].radiosity;
+    const double brightest = all.empty() ? 0.0 : std::ranges::max(all, {}, &BoundedValue::lower).lower;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const double share = share_of(all[i].lower, all[i].upper, brightest);
+      if (share > widest.share) widest = {i, c, share};
+    }
+  }
+  return widest;
+}
+
+}  // namespace exactff::radiosity
