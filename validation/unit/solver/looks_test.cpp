@@ -164,7 +164,9 @@ TEST_F(LooksAtStrips, KnowSmoothFunctionsWell) {
       const bool is_prepared = points == 0 || looks.prepare_for_all(points);
       ASSERT_TRUE(is_prepared);
       const Looks::Mean found = looks.look();
-      EXPECT_LE(std::abs(found.value - 1.0 / 6.0), (points < 5000 ? 1.0 : 0.01) * found.error) << has_change;
+      // Once there are enough of them, guesses leave little, but for their slopes if these may be no steeper.
+      const double share = points < 5000 ? 1.0 : has_change ? 0.3 : 0.01;
+      EXPECT_LE(std::abs(found.value - 1.0 / 6.0), share * found.error) << has_change;
       errors.push_back(found.error);
     }
     // r L alone, if the range is all that is known.
