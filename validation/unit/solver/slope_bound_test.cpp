@@ -118,9 +118,18 @@ class SlopeOfSquares : public testing::Test {
     plain_.add_ring(plain_.patch("floor"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
     plain_.add_ring(plain_.patch("source"), {{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}});
   }
-  // With the faces so far.
+  // With the faces so far, which share their corners.
   [[nodiscard]] double slope(const Vec3& at, double radius) const {
-    const Scene scene = generate::build(plain_);
+    PlainScene joined = plain_;
+    for (generate::PlainPatch& patch : joined.patches) {
+      for (generate::PlainFace& face : patch.faces) {
+        for (std::uint32_t& corner : face.rings[0]) {
+          const auto first = std::ranges::find(joined.vertices, joined.vertices[corner]);
+          corner = static_cast<std::uint32_t>(first - joined.vertices.begin());
+        }
+      }
+    }
+    const Scene scene = generate::build(joined);
     return Seen(scene).slope(at, radius);
   }
   void cover(const std::vector<Vec3>& ring) { plain_.add_ring(plain_.patch("cover"), ring); }
