@@ -8,8 +8,8 @@
 //
 //   F <= A_j / (pi d^2) * min(1, h / d) * min(1, k / d)
 //
-// from every point of the cell. Coordinates are at most 1 and rounded once, so the distance of two boxes, a height and
-// an area are computed to within 2^-46; each is moved by kAside to the safe side.
+// from every point of the cell. Coordinates are at most 1 and rounded once, or those of a tile within 2^-48, so the
+// distance of two boxes, a height and an area are computed to within 2^-45; each is moved by kAside to the safe side.
 //
 // By the factor F0 of the whole source, where nothing hides it. Seen from points of the receiver's plane, the part of
 // the source in front of this plane is always the same polygon, and F0 is Eq. (4) on its edges, or 0 from behind. As x

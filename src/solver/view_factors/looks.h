@@ -1,4 +1,4 @@
-// Looks at a function of which only its ranges are known: means over convex parts, from random points.
+// Looks at a function of which only bounds are known: means over convex parts, from random points.
 //
 // The parts are cut into strata. In each, two independent points are drawn, or the function is asked at the middle and
 // at one random point. strata.h has the points, stratified_mean.h the interval, which assumes nothing of the function
@@ -9,8 +9,8 @@
 //
 // Each look has points of its own, for an interval of a tenth of the width of the last one or, where the points were
 // not enough, of the same width again; how many are needed is predicted from the ranges and from the last look. Look k
-// has a share of 1 / (k (k + 1)) of the risk, so that all of them are right with a probability of 1 - risk: the
-// narrowest is the result, and it does no harm that the next look and the end depend on what has been seen.
+// has a share of 1 / (k (k + 1)) of the risk, so that all of them are right with a probability of 1 - risk: any of them
+// is a result, or what they have in common, and it does no harm that the next look and the end depend on what was seen.
 //
 // Rounding. The shares of the strata are as wrong as their areas, whose roundings are enclosed.
 #pragma once

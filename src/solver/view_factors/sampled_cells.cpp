@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernel/poll.h"
+#include "view_factors/certified_integral.h"
 #include "view_factors/factor_bound.h"
 #include "view_factors/formula.h"
 #include "view_factors/looks.h"
