@@ -34,13 +34,13 @@ enum class Claim {
 
 // How a factor was found.
 enum class Way {
-  // By cells, on each of which the visible boundary is proved. The error of an estimated factor is four times the
-  // difference of two Gauss rules, or, closer to an edge than 1.5 radii of the cell, all that the point factor may be
+  // By cells, on each of which the visible boundary is proved. The error of an estimated factor is four times what
+  // three Gauss rules tell of it, or, closer to an edge than 1.5 radii of the cell, all that the point factor may be
   // there. Where the order of edges could not be decided on a cell (event cells), a bound is added.
   kCells,
-  // Where cells would cost more: the mean of exact point factors over at least 100 strata, two independent points in
-  // each, of a patch or of all cells that are not known well; others count as by kCells. The interval assumes nothing
-  // of the point factor but its largest value: that of an unhidden source, or what is proved for a cell.
+  // Where cells would cost more: the mean of exact point factors over at least 100 strata, two points in each, of a
+  // patch or of all cells that are not known well; others count as by kCells. The interval assumes nothing of the point
+  // factor but what is proved: its largest value, and how fast it can change.
   kPoints,
 };
 [[nodiscard]] std::string_view to_string(Way way);  // "cells", "points"

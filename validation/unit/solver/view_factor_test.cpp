@@ -10,6 +10,7 @@
 
 #include "exactff/exact.h"
 #include "exactff/matrix.h"
+#include "exactff/models.h"
 #include "exactff/receiver.h"
 #include "exactff/scene_files.h"
 #include "exactff/view_factors.h"
@@ -392,6 +393,17 @@ TEST(ViewFactor, ThatPointsCannotReachIsByCells) {
   EXPECT_EQ(f.way, Way::kCells);
   EXPECT_LE(f.lower, alone.upper);
   EXPECT_GE(f.upper, alone.lower);
+}
+
+// Two Gauss rules agree by chance on a cell near an edge. The truth is what certified enclosures of both directions
+// have in common.
+TEST(ViewFactor, IsNotBelievedWhereTwoRulesAgreeByChance) {
+  const Scene scene = models::make_scene("karkanis:n=1,cover=1,seed=2016003");
+  const ViewFactor f =
+      view_factor(scene, named(scene, "floor"), named(scene, "occ"), {.accuracy = 1e-8, .budget = 100});
+  EXPECT_EQ(f.way, Way::kCells);
+  EXPECT_LE(f.lower, 0.12873930598961789);
+  EXPECT_GE(f.upper, 0.12873930598974528);
 }
 
 // Certified enclosures; of the second one, six digits, from the point factor of the tiny triangle to the large one.
