@@ -12,6 +12,7 @@
 #include "generate/random.h"
 #include "kernel/vec.h"
 #include "support/random_scenes.h"
+#include "unit/solver/factor_at.h"
 #include "view_factors/pair_shaft.h"
 #include "view_factors/patch_parts.h"
 #include "view_factors/seen_parts.h"
@@ -51,12 +52,7 @@ TEST(FactorBound, IsAtLeastEveryFormFactorOfTheCell) {
     const ExactSource from(scene, scene.select("source"));
     double largest = 0.0;
     for (const Point& corner : sight->root.corners) {
-      const int exponent = static_cast<int>(exact.units.exponent + exact.units.shift);
-      const Vec3 at{std::ldexp(corner.at.x, exponent), std::ldexp(corner.at.y, exponent),
-                    std::ldexp(corner.at.z, exponent)};
-      const auto& n = sight->receiver.rounded;
-      const Receiver x{.point = at, .normal = {n[0], n[1], n[2]}, .on = {receiver.face}, .id = {}};
-      largest = std::max(largest, exact_form_factor(scene, x, from).value);
+      largest = std::max(largest, factor_at(exact, corner.at, sight->receiver, receiver.face, from));
     }
     EXPECT_LE(largest, bound * (1.0 + 0x1p-30));
     tight += largest > 0.25 * bound ? 1 : 0;
@@ -79,7 +75,6 @@ TEST(OpenFactorBound, IsAtLeastEveryFormFactorOfTheHull) {
     const std::vector<Vec3> corners = positions_of(receiver.corners);
     const Vec3 middle = kernel::scaled(kernel::sum(kernel::sum(corners[0], corners[1]), corners[2]), 1.0 / 3.0);
     const ExactSource from(scene, scene.select("source"));
-    const int exponent = static_cast<int>(exact.units.exponent + exact.units.shift);
     for (const double size : {1.0, 0.25, 0x1p-12}) {
       std::vector<Vec3> hull;
       for (const Vec3& corner : corners)
@@ -87,11 +82,7 @@ TEST(OpenFactorBound, IsAtLeastEveryFormFactorOfTheHull) {
       const double largest = bound.on(hull);
       double found = 0.0;
       for (const Vec3& at : hull) {
-        const Receiver x{.point = {std::ldexp(at.x, exponent), std::ldexp(at.y, exponent), std::ldexp(at.z, exponent)},
-                         .normal = {plane.rounded[0], plane.rounded[1], plane.rounded[2]},
-                         .on = {receiver.face},
-                         .id = {}};
-        found = std::max(found, exact_form_factor(scene, x, from).value);
+        found = std::max(found, factor_at(exact, at, plane, receiver.face, from));
       }
       EXPECT_LE(found, largest) << s << ' ' << size;
       if (size > 0.1 || found == 0.0) continue;

@@ -15,6 +15,7 @@
 #include "generate/random.h"
 #include "kernel/vec.h"
 #include "support/random_scenes.h"
+#include "unit/solver/factor_at.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/patch_parts.h"
 #include "view_factors/seen_parts.h"
@@ -31,8 +32,7 @@ using validation::seed_of;
 class Seen {
  public:
   explicit Seen(const Scene& scene)
-      : scene_(scene),
-        exact_(scene),
+      : exact_(scene),
         receiver_(parts_of(exact_, scene.select("floor")).front()),
         source_(scene, scene.select("source")),
         sight_(sight_of(exact_, SeenParts(exact_).seen_from(receiver_).occluders, receiver_,
@@ -47,19 +47,10 @@ class Seen {
     return bound().about(kernel::scaled(at, 1.0 / unit), radius / unit) / unit;
   }
   [[nodiscard]] double factor(const Vec3& at) const {
-    const auto in_scene = [&](double x) {
-      return std::ldexp(x, static_cast<int>(exact_.units.exponent + exact_.units.shift));
-    };
-    const auto& n = sight_->receiver.rounded;
-    const Receiver x{.point = {in_scene(at.x), in_scene(at.y), in_scene(at.z)},
-                     .normal = {n[0], n[1], n[2]},
-                     .on = {receiver_.face},
-                     .id = {}};
-    return exact_form_factor(scene_, x, source_).value;
+    return factor_at(exact_, at, sight_->receiver, receiver_.face, source_);
   }
 
  private:
-  const Scene& scene_;
   ExactScene exact_;
   Part receiver_;
   ExactSource source_;
