@@ -23,8 +23,9 @@ Span PatchBounds::on(std::size_t part, const Part& fragment, const Tile& tile, b
   const OfPart& bounds = of(part);
   Span span{.range = range_on(bounds, corners_of(fragment, tile))};
   if (!with_change) return span;
+  const Reach reach = reach_of(fragment, tile);
   const double useful = span.range / kDraws;
-  span.change = sum_of(bounds, [&](const SlopeBound& slope) { return slope.change_on(fragment, tile, useful); });
+  span.change = sum_of(bounds, [&](const SlopeBound& slope) { return slope.change_on(reach, useful); });
   span.change += 2.0 * kRoundedPoints;
   return span;
 }

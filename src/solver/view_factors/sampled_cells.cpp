@@ -105,7 +105,7 @@ class SampledCells::FactorOfCells : public SampledFunction {
       of.slope.emplace(of.pair.sight());
       pieces_ += of.slope->pieces();
     }
-    return of.slope->change_on(parts()[tile.part], tile, most) + 2.0 * kRoundedPoints;
+    return of.slope->change_on(reach_of(parts()[tile.part], tile), most) + 2.0 * kRoundedPoints;
   }
 
   void add(const Pair& pair, const Share& share) {

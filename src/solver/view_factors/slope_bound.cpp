@@ -10,37 +10,31 @@
 #include "view_factors/cell.h"
 
 namespace exactff::view_factors {
-SlopeBound::SlopeBound(const Sight& sight) {
-  const Side receiver = side_of(sight.receiver);
-  const auto segment_of = [&](const Edge& edge) {
-    const Vec3 &a = sight.points[edge.from].at, &b = sight.points[edge.to].at;
-    const double height = std::max({receiver.height(a), receiver.height(b), 0.0}) + kAside;
-    return Segment{.a = a, .b = b, .height = height, .one = {}, .other = {}};
-  };
-  const auto cut = [](const std::vector<Segment>& segments) {
-    std::vector<Segment> pieces;
-    for (const Segment& whole : segments) {
-      const Vec3 along = kernel::difference(whole.b, whole.a);
-      const double count = std::max(1.0, std::ceil(kernel::length(along) / kLongest));
-      for (double i = 0.0; i < count; i += 1.0) {
-        pieces.push_back(whole);
-        if (i > 0.0) pieces.back().a = pieces[pieces.size() - 2].b;
-        if (i + 1.0 < count) pieces.back().b = kernel::along(whole.a, along, (i + 1.0) / count);
-      }
-    }
-    return pieces;
-  };
-  std::vector<Segment> segments;
+
+SlopeBound::SlopeBound(const Sight& sight) : of_occluders_(cut(edges_of_occluders(sight))) {
+  std::vector<Segment> edges;
   for (const Edge& edge : sight.source) {
     source_.push_back(sight.points[edge.from].at);
-    segments.push_back(segment_of(edge));
+    edges.push_back(segment_of(sight, edge));
   }
-  of_source_ = cut(std::exchange(segments, {}));
+  of_source_ = cut(edges);
+}
+
+SlopeBound::Segment SlopeBound::segment_of(const Sight& sight, const Edge& edge) {
+  const Side receiver = side_of(sight.receiver);
+  const Vec3 &a = sight.points[edge.from].at, &b = sight.points[edge.to].at;
+  const double height = std::max({receiver.height(a), receiver.height(b), 0.0}) + kAside;
+  return {.a = a, .b = b, .height = height, .one = {}, .other = {}};
+}
+
+// Each once, with the planes of two occluders that share it.
+std::vector<SlopeBound::Segment> SlopeBound::edges_of_occluders(const Sight& sight) {
   struct Met {
     std::size_t segment, times;
     PointId from;
     const Plane* plane;
   };
+  std::vector<Segment> segments;
   std::map<std::pair<PointId, PointId>, Met> met;
   for (const Occluder& occluder : sight.occluders) {
     for (const Edge& edge : occluder.ring) {
@@ -49,7 +43,7 @@ SlopeBound::SlopeBound(const Sight& sight) {
       Met& before = place->second;
       ++before.times;
       if (is_new) {
-        segments.push_back(segment_of(edge));
+        segments.push_back(segment_of(sight, edge));
         continue;
       }
       Segment& segment = segments[before.segment];
@@ -58,7 +52,22 @@ SlopeBound::SlopeBound(const Sight& sight) {
       segment.other = side_of(*occluder.plane);
     }
   }
-  of_occluders_ = cut(segments);
+  return segments;
+}
+
+// Into pieces of at most kLongest.
+std::vector<SlopeBound::Segment> SlopeBound::cut(const std::vector<Segment>& segments) {
+  std::vector<Segment> pieces;
+  for (const Segment& whole : segments) {
+    const Vec3 along = kernel::difference(whole.b, whole.a);
+    const double count = std::max(1.0, std::ceil(kernel::length(along) / kLongest));
+    for (double i = 0.0; i < count; i += 1.0) {
+      pieces.push_back(whole);
+      if (i > 0.0) pieces.back().a = pieces[pieces.size() - 2].b;
+      if (i + 1.0 < count) pieces.back().b = kernel::along(whole.a, along, (i + 1.0) / count);
+    }
+  }
+  return pieces;
 }
 
 SlopeBound::Side SlopeBound::side_of(const Plane& plane) {
@@ -115,14 +124,6 @@ double SlopeBound::about(const Vec3& centre, double radius, double most) const {
     if (!is_beyond && !is_hidden(piece, centre, radius)) sum += slope(piece, centre, radius);
   }
   return sum < largest ? sum / std::numbers::pi * kOverRoundings : HUGE_VAL;
-}
-
-double SlopeBound::change_on(const Part& part, const Tile& tile, double most) const {
-  const Vec3 middle = sides_of(part, tile).at(middle_of(tile));
-  double radius = 0.0;
-  for (const Vec3& corner : corners_of(part, tile)) radius = std::max(radius, kernel::distance(corner, middle));
-  radius = radius * (1.0 + kOfMiddle) + kAside;
-  return about(middle, radius, most / radius) * radius;
 }
 
 }  // namespace exactff::view_factors

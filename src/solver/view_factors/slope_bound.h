@@ -40,16 +40,17 @@ class SlopeBound {
   // At least |F(x) - F(y)| / |x - y| for all x and y of the receiver that are at most so far from the centre. Infinite
   // if it would be more than `most`.
   [[nodiscard]] double about(const Vec3& centre, double radius, double most = HUGE_VAL) const;
-  // At least by how much the factor differs, on the tile, from what it is at the middle. Infinite if it would be more
+  // At least by how much the factor differs, on a tile, from what it is at the middle. Infinite if it would be more
   // than `most`.
-  [[nodiscard]] double change_on(const Part& part, const Tile& tile, double most) const;
+  [[nodiscard]] double change_on(const Reach& tile, double most) const {
+    return about(tile.middle, tile.radius, most / tile.radius) * tile.radius;
+  }
   static constexpr std::size_t kMostPieces = 1 << 17;  // of edges, of all bounds together: some 20 MB
   [[nodiscard]] std::size_t pieces() const { return of_source_.size() + of_occluders_.size(); }
 
  private:
   static constexpr double kAside = 0x1p-40, kLeastDistance = 0x1p-28, kLongest = 0.125;
   static constexpr double kThin = 0x1p-30;                 // an angle
-  static constexpr double kOfMiddle = 0x1p-30;             // of a side: a point at the middle of a tile is rounded down
   static constexpr double kOverRoundings = 1.0 + 0x1p-40;  // more than the roundings of the bound itself
 
   struct Side {
@@ -71,6 +72,9 @@ class SlopeBound {
   };
 
   [[nodiscard]] static Side side_of(const Plane& plane);
+  [[nodiscard]] static Segment segment_of(const Sight& sight, const Edge& edge);
+  [[nodiscard]] static std::vector<Segment> edges_of_occluders(const Sight& sight);
+  [[nodiscard]] static std::vector<Segment> cut(const std::vector<Segment>& segments);
   [[nodiscard]] std::vector<Beside> planes_beside(const Vec3& centre) const;
   [[nodiscard]] static bool is_hidden(const Segment& segment, const Vec3& centre, double radius);
   [[nodiscard]] static double slope(const Segment& piece, const Vec3& centre, double radius);

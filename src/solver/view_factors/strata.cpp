@@ -17,6 +17,8 @@ constexpr std::uint64_t kWholeSide = std::uint64_t{1} << kShareBits;
 
 std::uint64_t mix(std::uint64_t key) { return kernel::split_mix(0, key); }
 
+constexpr double kOfMiddle = 0x1p-30;  // of a side: a point at the middle of a tile is rounded down
+constexpr double kOfReach = 0x1p-40;
 constexpr double kAreaRoundings = 0x1p-40;  // relative: far more than there are
 
 // Exactly.
@@ -159,6 +161,13 @@ std::vector<Vec3> corners_of(const Part& part, const Tile& tile) {
   const Sides sides = sides_of(part, tile);
   if (tile.shape == Tile::Shape::kTriangle) return {sides.origin, sides.at({1, 0}), sides.at({0, 1})};
   return {sides.origin, sides.at({1, 0}), sides.at({1, 1}), sides.at({0, 1})};
+}
+
+Reach reach_of(const Part& part, const Tile& tile) {
+  const Vec3 middle = sides_of(part, tile).at(middle_of(tile));
+  double radius = 0.0;
+  for (const Vec3& corner : corners_of(part, tile)) radius = std::max(radius, kernel::distance(corner, middle));
+  return {middle, radius * (1.0 + kOfMiddle) + kOfReach};
 }
 
 }  // namespace exactff::view_factors

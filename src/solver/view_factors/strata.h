@@ -78,6 +78,12 @@ struct Sides {
 [[nodiscard]] Sides sides_of(const Part& part, const Tile& tile);
 // In the order of the part's.
 [[nodiscard]] std::vector<Vec3> corners_of(const Part& part, const Tile& tile);
+// All of the tile is at most so far from its middle, from point_at() there, too; with all roundings.
+struct Reach {
+  Vec3 middle;
+  double radius;
+};
+[[nodiscard]] Reach reach_of(const Part& part, const Tile& tile);
 
 // Of a stratum.
 inline constexpr std::size_t kDraws = 2;
