@@ -239,14 +239,14 @@ void Pair::add_dark(Cell cell, Candidates candidates, PairMemory::Way way, std::
 template <unsigned kCount>
 Pair::Integral Pair::integrate_by(const Formula& formula, const Cell& cell, double radii) const {
   const std::vector<Vec3> ring = positions_of(cell.corners);
-  const Rule rule = gauss_integral<kCount>(formula, cell, ring),
-             lower = gauss_integral<kCount - 1>(formula, cell, ring);
+  const Rule rule = gauss_integral<kCount>(formula, cell, ring);
   Integral found{.integral = rule.integral, .rounding = rule.rounding};
   if (radii >= kLeastRadii) {
-    const double lowest = gauss_integral<kCount - 2>(formula, cell, ring).integral;
+    const double lower = gauss_integral<kCount - 1>(formula, cell, ring).integral,
+                 lowest = gauss_integral<kCount - 2>(formula, cell, ring).integral;
     const double rho = radii + std::sqrt(radii * radii - 1.0), rho_squared = rho * rho;
-    const double by_last = std::abs(rule.integral - lower.integral),
-                 by_before = std::abs(lower.integral - lowest) / (rho_squared * rho_squared);
+    const double by_last = std::abs(rule.integral - lower),
+                 by_before = std::abs(lower - lowest) / (rho_squared * rho_squared);
     found.error = 4.0 * std::max(by_last, by_before) + rule.rounding;
   } else {
     const double size = area(ring), most = bound_.on(ring);
