@@ -84,7 +84,7 @@ bool Looks::split_within(std::size_t points) {
 }
 
 bool Looks::prepare(double width, std::uint64_t effort, std::size_t points) {
-  // More points hardly make known what is not.
+  // More points rarely help where the function is not known.
   if (!(width > last_.most.value - last_.least.value)) return false;
   while (expected_width() > kOfExpected * width) {
     if (effort_after_next() > effort || !split_within(points)) return false;

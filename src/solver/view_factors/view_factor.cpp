@@ -20,7 +20,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "exactff/view_factors.h"
@@ -164,7 +163,10 @@ class Search {
       ViewFactor found;
       take_interval(integral, from_, found);
       const double lower = std::max(found.lower, at_cells_.lower), upper = std::min(found.upper, at_cells_.upper);
-      if (lower <= upper) std::tie(at_cells_.lower, at_cells_.upper) = std::pair(lower, upper);
+      if (lower <= upper) {
+        at_cells_.lower = lower;
+        at_cells_.upper = upper;
+      }
       return is_accurate(at_cells_);
     };
     points_at_cells_.look(cells_, cells_left ? cells_.effort() : kAnyEffort, is_enough);
