@@ -236,10 +236,11 @@ struct DividedScene {
 
 // Cuts every face into cells, no side of which is longer than `length` (but for one part in 10^9). Cells of the patch
 // NAME are patches NAME:1, NAME:2, ..., which Scene::select_all("NAME") finds; a lone cell keeps its name. Corners are
-// rounded to doubles once, and all faces along an edge share its points, T-junctions included, so closed surfaces stay
-// closed. A cell is exactly planar: one that rounding bends is cut into triangles, with a side that may be longer.
-// Faces without area are left out; what is flipped or transparent stays so. Throws InputError for a length that is not
-// positive or that would make more than 4 million cells, and if a patch has the name of a cell.
+// rounded to doubles once, and all faces along an edge that is cut share its points, T-junctions included, so closed
+// surfaces stay closed. A cell is exactly planar: one that rounding bends is cut into triangles, with a side that may
+// be longer. Faces without area are left out; what is flipped or transparent stays so. Throws InputError for a length
+// that is not positive or that would make more than 4 million cells, and if a patch has a name that a cell of another
+// could have.
 [[nodiscard]] DividedScene divided(const Scene& scene, double length);
 
 // What a scene contains, patch by patch: the rows of `exactff info`. For people who look at a scene; estimates.

@@ -4,8 +4,8 @@
 //    than LENGTH. A cell is exactly planar; one that is not is cut into triangles.
 // 2. Otherwise it is cut along a chord between two points of its outline: the shortest that leaves at least a quarter
 //    of the area on either side; of several, the one whose parts are the most alike. A chord longer than LENGTH is cut
-//    into equal lengths, whose points both sides share. So no cell has a point of another inside an edge, and a
-//    rectangle becomes a grid.
+//    into equal lengths, whose points both sides share. So no cell has a point of another one of the polygon inside
+//    an edge, and a rectangle becomes a grid.
 // 3. Both parts are cut likewise.
 //
 // It ends: a chord that is not cut leaves fewer points on either side. One is cut only where the area exceeds a

@@ -1,7 +1,8 @@
 // A scene cut into cells, each a patch.
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <functional>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "kernel/vec.h"
 #include "scene/extent.h"
 #include "scene/scene_data.h"
+#include "text/numbered_name.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
@@ -66,15 +68,33 @@ struct Cell {
   Rings rings;
 };
 
+using CutPatch = std::pair<std::string, std::vector<Cell>>;  // with its name
+
+// The cells of NAME are found by their names (Scene::select_all), so no other patch may be called as one of them.
+void require_names_of_no_cells(const std::vector<CutPatch>& patches) {
+  std::map<std::string, bool, std::less<>> is_cut;
+  for (const auto& [name, cells] : patches) is_cut[name] = cells.size() > 1;
+  for (const auto& [name, cells] : patches) {
+    for (auto parts = text::numbered_name(name); parts; parts = text::numbered_name(parts->patch)) {
+      const auto whole = is_cut.find(parts->patch);
+      if (whole == is_cut.end() || !(whole->second || cells.size() > 1)) continue;
+      text::refuse("divided, the patch " + text::in_quotes(name, text::kShownName) + " would count as cells of " +
+                       text::in_quotes(whole->first, text::kShownName),
+                   "cells are named NAME:k, and NAME means all of them", "rename one of the two patches");
+    }
+  }
+}
+
 class Division {
  public:
   Division(const Scene& scene, double length)
       : scene_(scene), points_(scene.vertices(), length), cuts_(scene, points_) {}
 
   DividedScene run() {
-    std::vector<std::pair<std::string, std::vector<Cell>>> patches;
+    std::vector<CutPatch> patches;
     for (const Patch& patch : scene_.patches()) patches.emplace_back(patch.name, cells_of(patch));
     std::erase_if(patches, [](const auto& patch) { return patch.second.empty(); });
+    require_names_of_no_cells(patches);
     SceneBuilder builder = start();
     for (const auto& [name, cells] : patches) {
       for (std::size_t k = 0; k < cells.size(); ++k) {
@@ -133,10 +153,6 @@ class Division {
   }
 
   void add(SceneBuilder& builder, const std::string& name, const Cell& cell) {
-    if (!names_.insert(name).second) {
-      text::refuse("two patches of the divided scene would be called " + text::in_quotes(name, text::kShownName),
-                   "cells are named NAME:k, and a patch has such a name already", "rename that patch");
-    }
     const Face& face = scene_.face(cell.face);
     Rings rings = cell.rings;
     const PatchId patch = builder.patch(name);
@@ -152,7 +168,6 @@ class Division {
   const Scene& scene_;
   CutPoints points_;
   EdgeCuts cuts_;
-  std::set<std::string> names_;
   std::vector<Selection> transparent_, flipped_;
   std::size_t added_ = 0, faces_cut_ = 0;
   double largest_distance_ = 0.0;

@@ -212,5 +212,27 @@ TEST(Division, SaysWhyItRefuses) {
   EXPECT_NE(validation::complaint([&] { (void)divided(clash, 1.5); }), "");
 }
 
+// NAME means all of its cells, found by their names: a patch of a similar name must not be among them.
+TEST(Division, NoPatchMayCountAsCellsOfAnother) {
+  const auto scene_of = [](const char* small, const char* large) {
+    SceneBuilder builder;
+    for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{2, 0, 0}, Vec3{2, 1, 0}, Vec3{0, 1, 0}, Vec3{8, 0, 1}, Vec3{8, 1, 1}})
+      builder.add_vertex(v);
+    const MaterialId material = builder.add_material({});
+    builder.add_face(builder.patch(small), material, {{0, 1, 2, 3}});
+    builder.add_face(builder.patch(large), material, {{0, 4, 5, 3}});
+    return builder.build();
+  };
+  const auto said = [](const Scene& scene, double length) {
+    return validation::complaint([&] { (void)divided(scene, length); });
+  };
+  EXPECT_EQ(said(scene_of("a", "a:7"), 20.0), "");  // nothing is cut
+  EXPECT_NE(said(scene_of("a", "a:7"), 1.0).find("the patch 'a:7' would count as cells of 'a'"), std::string::npos);
+  EXPECT_NE(said(scene_of("a", "a:1"), 3.0).find("'a:1' would count as cells of 'a'"), std::string::npos);
+  EXPECT_NE(said(scene_of("a:1:1", "a"), 3.0).find("'a:1:1' would count as cells of 'a'"), std::string::npos);
+  EXPECT_EQ(said(scene_of("a:1", "a:2"), 1.0), "");
+  EXPECT_EQ(said(scene_of("a", "a:b"), 1.0), "");
+}
+
 }  // namespace
 }  // namespace exactff
