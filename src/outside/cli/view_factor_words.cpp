@@ -20,14 +20,21 @@ namespace {
 struct Wide {
   std::size_t row = 0;
   std::string to;
-  double width = 0.0;
+  double width = 0.0, back = 0.0;  // of this direction, and of the other one
+
+  [[nodiscard]] double widest() const { return std::max(width, back); }
 };
+
+Wide wide_entry(std::size_t row, std::string to, const ViewFactor& f) {
+  const double width = f.upper - f.lower;
+  return {row, std::move(to), width, f.area_to > 0.0 ? width * (f.area_from / f.area_to) : 0.0};
+}
 
 std::vector<Wide> wide_entries(const Scene& scene, const matrix::Matrix& matrix, Limit limit) {
   std::vector<Wide> wide;
   const matrix::Factors& all = matrix.factors;
   const auto look_at = [&](std::size_t row, const auto& name, const ViewFactor& f) {
-    if (!f.accurate && f.limit == limit) wide.push_back({row, name(), f.upper - f.lower});
+    if (!f.accurate && f.limit == limit) wide.push_back(wide_entry(row, name(), f));
   };
   for (std::size_t i = 0; i < all.from.size(); ++i) {
     for (std::size_t j = 0; j < all.to.size(); ++j) {
@@ -37,15 +44,24 @@ std::vector<Wide> wide_entries(const Scene& scene, const matrix::Matrix& matrix,
     if (!matrix.back.empty())
       look_at(
           i, [] { return std::string(matrix::kBack); }, matrix.back[i]);
-    if (!matrix.open.empty())
+    if (!matrix.open.empty()) {
+      ViewFactor open = matrix.open[i];
+      open.area_to = 0.0;  // the sky has none
       look_at(
-          i, [] { return std::string(matrix::kOpen); }, matrix.open[i]);
+          i, [] { return std::string(matrix::kOpen); }, open);
+    }
   }
-  std::ranges::stable_sort(wide, std::ranges::greater(), &Wide::width);
+  std::ranges::stable_sort(wide, std::ranges::greater(), &Wide::widest);
   return wide;
 }
 
-// "2 entries are wider than the accuracy 0.001: 'floor' to 'light' by 0.004, ..."
+// Its width or, if only the other direction is wider than the accuracy, that one's.
+std::string words_of(const Wide& one, double accuracy) {
+  if (one.width > accuracy || one.back <= accuracy) return text::short_number(one.width, 2);
+  return text::short_number(one.back, 2) + " from there";
+}
+
+// "2 entries are wider than the accuracy 0.001: 'floor' to 'light' (0.004), 'floor' to 'plant' (0.002 from there)"
 std::string words_of_wide(const Scene& scene, const matrix::Matrix& matrix, const std::vector<Wide>& wide,
                           double accuracy) {
   constexpr std::size_t kMostNamed = 3;
@@ -53,7 +69,7 @@ std::string words_of_wide(const Scene& scene, const matrix::Matrix& matrix, cons
   for (const Wide& one : wide) {
     if (named.size() == kMostNamed) break;
     named.push_back(text::in_quotes(scene.name_of(matrix.factors.from[one.row])) + " to " + one.to + " (" +
-                    text::short_number(one.width, 2) + ")");
+                    words_of(one, accuracy) + ")");
   }
   if (wide.size() > kMostNamed) named.emplace_back("...");
   return text::counted(static_cast<std::uint64_t>(wide.size()), "entry", "entries") +

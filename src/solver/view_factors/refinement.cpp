@@ -20,6 +20,7 @@ constexpr double kShareOfQuadrature = 0.0625;              // the same, of a cel
 constexpr double kShareOfCell = 0x1p-12;                   // the same, of a certified cell as large as the patch
 constexpr double kCoarse = 0x1p-7;                         // of the smaller area: the error of a cell of step 1
 constexpr double kShareOfUnknown = 0x1p-24;                // of all errors: a smaller one matters to no point
+constexpr double kAtRoundings = 0x1p-40;                   // of the area: sums of many cells have errors that large
 constexpr std::size_t kSharesOfARound = 64;                // one of so many is improved before the error is summed
 constexpr std::size_t kMostPoints = std::size_t{1} << 20;  // of all pairs of parts: some 200 MB
 
@@ -105,7 +106,7 @@ Pair::Limits Refinement::limits() const {
 }
 
 void Refinement::refine(const std::function<bool(const kernel::Disc&)>& is_enough) {
-  while (!is_enough(narrowest_) && (improve_some() || start_next_stage())) narrow();
+  while (!is_enough(narrowest_) && !is_at_roundings() && (improve_some() || start_next_stage())) narrow();
 }
 
 bool Refinement::go_on() {
@@ -201,7 +202,14 @@ void Refinement::narrow() {
       running_error_ += w.share.error;
     }
   }
-  if (sum.radius < narrowest_.radius) narrowest_ = sum;
+  if (!(sum.radius < narrowest_.radius)) return;
+  narrowest_ = sum;
+  cost_of_narrowest_ = cost_;
+}
+
+// Half of the work was of no use, and what is left is as small as roundings are.
+bool Refinement::is_at_roundings() const {
+  return narrowest_.radius <= kAtRoundings * from_.unit_area && cost_ >= 2 * cost_of_narrowest_;
 }
 
 double Refinement::estimate() const {

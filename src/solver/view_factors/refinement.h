@@ -64,7 +64,8 @@ class Refinement {
   [[nodiscard]] std::size_t event_cells() const;
   // What ended it, if the integral is not known well enough.
   [[nodiscard]] Limit limit() const {
-    return gave_up_ ? Limit::kCrowd : cost_ >= options_.budget ? Limit::kBudget : Limit::kRounding;
+    if (gave_up_) return Limit::kCrowd;
+    return cost_ >= options_.budget && !is_at_roundings() ? Limit::kBudget : Limit::kRounding;
   }
 
  private:
@@ -91,6 +92,7 @@ class Refinement {
   [[nodiscard]] bool improve_some();
   void improve_worst();
   void narrow();
+  [[nodiscard]] bool is_at_roundings() const;
   template <class Call>
   void work_on(std::size_t id, const Call& call);
   void add(Share share, std::size_t pair);
@@ -120,6 +122,7 @@ class Refinement {
   bool has_paused_ = false;
   bool gave_up_ = false;  // nothing but 0 <= F <= 1 is known
   kernel::Disc narrowest_;
+  std::size_t cost_of_narrowest_ = 0;  // when it was found
 };
 
 }  // namespace exactff::view_factors

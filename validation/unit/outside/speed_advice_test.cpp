@@ -30,6 +30,10 @@ TEST(SpeedAdvice, DependsOnWhatWasAsked) {
   EXPECT_EQ(words_on_speed(request),
             "Faster: no --certify, so that errors are estimated; no --both-directions; a smaller --budget than 100000, "
             "for wider entries; no --backs");
+  request.options.factors = {.accuracy = 1e-10, .certify = true};
+  EXPECT_EQ(words_on_speed(request).find("certify"), std::string::npos);
+  request.options.factors.certify = false;
+  EXPECT_TRUE(words_on_speed(request).starts_with("Faster: --certify, ")) << words_on_speed(request);
 }
 
 // Once, on stderr, only while it takes long, and with the name of the pair.

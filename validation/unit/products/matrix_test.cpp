@@ -488,6 +488,20 @@ TEST_F(MatrixFilesOfTheCommand, TellsWhyEntriesAreWider) {
   EXPECT_EQ(told, "");
 }
 
+// The floor is 22 times as large as the light, so that what is narrow from there may be wide from here.
+TEST_F(MatrixFilesOfTheCommand, TellsWhichDirectionIsWider) {
+  const auto told = [&](const char* from, const char* to) {
+    const validation::RunningProgram program(EXACTFF_PROGRAM,
+                                             {"matrix", EXACTFF_DATA_DIR "/scenes/cornell_box.obj", "--from", from,
+                                              "--to", to, "--accuracy", "0.02", "--budget", "8", "--certify"},
+                                             folder_.path() / "told");
+    EXPECT_EQ(program.wait(), 0);
+    return program.error();
+  };
+  EXPECT_NE(told("floor", "light").find(" from there) (the limit"), std::string::npos) << told("floor", "light");
+  EXPECT_EQ(told("light", "floor").find("from there"), std::string::npos) << told("light", "floor");
+}
+
 // The bounds of a coarse row may reach beyond 1, which no row does.
 TEST_F(MatrixFilesOfTheCommand, ShowsNoSumAboveOneThatCannotBe) {
   const std::string room = EXACTFF_DATA_DIR "/scenes/cornell_box.obj";

@@ -273,6 +273,21 @@ TEST(ViewFactor, KeepsItsWidthWhereTheBudgetIsUsedUp) {
   EXPECT_GE(coarse.upper, fine.lower);
 }
 
+// More work would not help, and is not done.
+TEST(ViewFactor, SaysWhenOnlyRoundingsAreLeft) {
+  const Scene scene = generate::build(plates_with_plate(1.0, 0.5, 0.75));
+  const Selection below = named(scene, "below"), above = named(scene, "above");
+  for (const bool certify : {true, false}) {
+    const ViewFactor found = view_factor(scene, below, above, {.accuracy = 1e-15, .certify = certify});
+    EXPECT_FALSE(found.accurate);
+    EXPECT_EQ(found.limit, Limit::kRounding) << certify;
+    EXPECT_LT(found.upper - found.lower, 1e-12);
+    EXPECT_LT(found.cells, 50000U);
+    EXPECT_EQ(view_factor(scene, below, above, {.accuracy = 1e-15, .budget = 8, .certify = certify}).limit,
+              Limit::kBudget);
+  }
+}
+
 // Nine parts see nine parts, and the budget is used up by the first pair.
 TEST(ViewFactor, OfManyPartsIsBoundedByDistanceWhereTheBudgetIsUsedUp) {
   PlainScene scene;
