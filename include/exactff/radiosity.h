@@ -57,10 +57,12 @@ struct Channel {
   // Why there is no upper bound: "Kd is 1 on floor and lamp, ...". Empty: there is one. Without it, upper bounds are
   // infinite, and lower bounds are E_i and 0, which hold all the same.
   std::string no_bound;
+  std::string remedy;  // what would give a bound
 
   [[nodiscard]] bool is_bounded() const { return no_bound.empty(); }
 };
 
+inline constexpr std::string_view kNoBound = "no bound";  // in place of a claim
 inline constexpr std::array<std::string_view, 3> kChannelNames = {"red", "green", "blue"};
 
 struct Solution {
@@ -152,6 +154,7 @@ struct SolutionFile {
   std::string file;
   std::string scene_hash;
   Origin origin;
+  Claim claim = Claim::kZero;  // the weakest of all rows with bounds
   std::vector<Row> rows;
 };
 // Throws one InputError with file:line for every problem.
@@ -161,7 +164,8 @@ struct SolutionFile {
 
 // What leaves all patches of a scene, for the light at its points: render.h, truth.h. Finite, not negative.
 struct Radiosities {
-  std::string name = {};  // of the solution, in metadata
+  std::string name = {};       // of the solution, in metadata
+  Claim claim = Claim::kZero;  // how strong the bounds are
   std::vector<Selection> patches = {};
   std::vector<Rgb> value = {}, lower = {}, upper = {};  // for each patch
 };

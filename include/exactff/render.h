@@ -186,7 +186,7 @@ struct Picture {
   // none count as 0. Exact values are correctly rounded; a mean of several points is that of these doubles, rounded
   // once.
   std::vector<double> values;
-  std::vector<double> lower, upper;  // on request: proved bounds
+  std::vector<double> lower, upper;  // on request: bounds, proved but for those of radiosities (their claim)
   std::vector<Shows> shows;          // of several points: the greatest
   // If a pixel has several points, 4 for each: the share of them that shows emitters, and the part of `values` that
   // comes from these. Estimates, for develop().

@@ -30,7 +30,9 @@ std::vector<Selection> changed(const Scene& scene, const std::string& flag, cons
   return selections;
 }
 
-Scene cells_of(const Scene& scene, double length) {
+}  // namespace
+
+Scene divided_with_note(const Scene& scene, double length) {
   DividedScene divided = exactff::divided(scene, length);
   std::cerr << "note: divided into " << text::counted(divided.cells, "cell") << "; "
             << text::counted(divided.faces_cut, "face") << (divided.faces_cut == 1 ? " was" : " were") << " cut, "
@@ -40,8 +42,6 @@ Scene cells_of(const Scene& scene, double length) {
             << '\n';
   return std::move(divided.scene);
 }
-
-}  // namespace
 
 void SceneArguments::add_to(CLI::App& app) {
   app.add_option("SCENE", path,
@@ -79,7 +79,7 @@ Scene SceneArguments::load() const {
                                         : read_scene(path, options());
   if (!flip.empty()) scene = scene.with_flipped(changed(scene, "--flip", flip));
   if (!transparent.empty()) scene = scene.with_transparent(changed(scene, "--transparent", transparent));
-  return divide ? cells_of(scene, *divide) : std::move(scene);
+  return divide ? divided_with_note(scene, *divide) : std::move(scene);
 }
 
 std::string command_words(const SceneArguments& args) {

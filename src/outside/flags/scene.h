@@ -32,6 +32,9 @@ struct SceneArguments {
   [[nodiscard]] Scene load() const;
 };
 
+// Prints the note on standard error.
+[[nodiscard]] Scene divided_with_note(const Scene& scene, double length);
+
 // The flags again, each preceded by a blank and quoted for a shell. SCENE is not among them.
 [[nodiscard]] std::string command_words(const SceneArguments& args);
 

@@ -19,6 +19,22 @@ std::optional<double> agreed_length(const std::optional<double>& flag, const rad
                "leave out --divide, or compute the radiosities with it");
 }
 
+// What cannot be done to this scene is what the file wants, not the user.
+Scene made_as_in(const radiosity::SolutionFile& file, const SceneArguments& scene) {
+  const std::vector<std::string>& two_sided = file.origin.two_sided;
+  SceneArguments undivided = scene;
+  undivided.divide.reset();
+  Scene made = undivided.load();
+  try {
+    if (scene.divide) made = divided_with_note(made, *scene.divide);
+    if (!two_sided.empty()) made = matrix::with_two_sided(made, selections_named(made, two_sided));
+  } catch (const InputError& error) {
+    text::refuse(file.file, "holds radiosities of a scene that was changed as this one cannot be",
+                 error.problems().front().what, "give the scene and the flags that `exactff radiosity` was given");
+  }
+  return made;
+}
+
 }  // namespace
 
 void SolutionArgument::add_to(CLI::App& app) {
@@ -34,9 +50,7 @@ LitScene load(const SceneArguments& scene, const SolutionArgument& solution) {
   const radiosity::SolutionFile file = radiosity::read_csv(solution.file);
   SceneArguments divided = scene;
   divided.divide = agreed_length(scene.divide, file);
-  Scene made = divided.load();
-  const std::vector<std::string>& two_sided = file.origin.two_sided;
-  if (!two_sided.empty()) made = matrix::with_two_sided(made, selections_named(made, two_sided));
+  Scene made = made_as_in(file, divided);
   radiosity::Radiosities radiosities = radiosity::radiosities_of(made, file);
   return {std::move(made), std::move(radiosities)};
 }

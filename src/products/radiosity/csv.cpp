@@ -84,6 +84,7 @@ class FileReader {
     value_ = column("radiosity");
     lower_ = column("lower");
     upper_ = column("upper");
+    claim_ = column("claim");
   }
 
   SolutionFile read() {
@@ -124,6 +125,7 @@ class FileReader {
                     "use the file as `exactff radiosity` wrote it");
       return;
     }
+    take_claim(csv_.field(claim_));
     const bool bounded = !csv_.field(upper_).empty();
     const double lower = csv_.number(lower_), upper = bounded ? csv_.number(upper_) : HUGE_VAL;
     const double value = bounded ? csv_.number(value_) : lower;
@@ -135,9 +137,22 @@ class FileReader {
                           BoundedValue{value, lower, upper}});
   }
 
+  // Until 2026-11-25, estimates had two other names.
+  void take_claim(const std::string& text) {
+    if (text == kNoBound) return;
+    const bool is_old = text == "topology-proved" || text == "statistical";
+    for (const Claim claim : {Claim::kZero, Claim::kCertified, Claim::kEstimated}) {
+      if (text != to_string(claim) && !(is_old && claim == Claim::kEstimated)) continue;
+      file_.claim = matrix::weaker(file_.claim, claim);
+      return;
+    }
+    csv_.complain("unknown claim " + text::in_quotes(text), "it says how strong the bounds are",
+                  "use the file as `exactff radiosity` wrote it");
+  }
+
   text::CsvTable csv_;
   SolutionFile file_;
-  std::size_t patch_ = 0, channel_ = 0, value_ = 0, lower_ = 0, upper_ = 0;
+  std::size_t patch_ = 0, channel_ = 0, value_ = 0, lower_ = 0, upper_ = 0, claim_ = 0;
 };
 
 }  // namespace

@@ -23,6 +23,10 @@ std::string hash_of(const Radiosities& radiosities) {
   return hash.digits();
 }
 
+std::string words_of_claim(const Radiosities& radiosities) {
+  return "the view factors behind them are " + std::string(to_string(radiosities.claim));
+}
+
 Gather::Gather(const Scene& scene, const Radiosities& radiosities, const std::string& scene_name)
     : factors_(scene, radiosities.patches, whole_view::Sky::kLeftOut),
       value_(factors_, radiosities.value),

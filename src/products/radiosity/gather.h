@@ -17,6 +17,8 @@ inline constexpr std::array<double Rgb::*, 3> kColours = {&Rgb::r, &Rgb::g, &Rgb
 
 // Of all numbers.
 [[nodiscard]] std::string hash_of(const Radiosities& radiosities);
+// "the view factors behind them are estimated", in metadata.
+[[nodiscard]] std::string words_of_claim(const Radiosities& radiosities);
 
 enum class GatherBounds { kNone, kAll };
 

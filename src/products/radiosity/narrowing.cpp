@@ -40,8 +40,7 @@ std::optional<Goal> goal_of(System system, double width) {
   if (bounds.value.empty()) return std::nullopt;
   Goal goal{std::move(system), bounds.value, 0.0};
   if (bounds.upper.empty()) {
-    // In a closed room of reflectance 1 there is no B that an estimate could be near.
-    if (std::ranges::max(goal.system.reflectances) >= 1.0) return std::nullopt;
+    if (may_have_no_solution(goal.system)) return std::nullopt;
     goal.width = width * std::ranges::max(goal.value);
     return goal;
   }

@@ -22,7 +22,7 @@ void set(Radiosities& all, std::size_t patch, std::size_t channel, const Bounded
 
 Radiosities of_patches(std::vector<Selection> patches) {
   const std::vector<Rgb> none(patches.size());
-  return {{}, std::move(patches), none, none, none};
+  return {.patches = std::move(patches), .value = none, .lower = none, .upper = none};
 }
 
 [[noreturn]] void refuse_unbounded(const std::string& file, std::size_t channel) {
@@ -59,6 +59,7 @@ std::string what_is_wrong_with(const std::string& patch, const Radiosities& all,
 
 Radiosities radiosities_of(const Solution& solution) {
   Radiosities all = of_patches(solution.patches);
+  all.claim = solution.claim;
   for (std::size_t c = 0; c < kColours.size(); ++c) {
     if (!solution.channels[c].is_bounded()) refuse_unbounded({}, c);
     for (std::size_t i = 0; i < all.patches.size(); ++i) set(all, i, c, solution.channels[c].radiosity[i]);
@@ -71,6 +72,7 @@ Radiosities radiosities_of(const Scene& scene, const SolutionFile& file) {
   require_scene(scene, file);
   Radiosities all = of_patches(patches_of(scene));
   all.name = std::filesystem::path(file.file).filename().string();
+  all.claim = file.claim;
   std::map<std::pair<std::string, std::size_t>, std::size_t> wanted;  // a channel of a patch
   for (std::size_t i = 0; i < all.patches.size(); ++i) {
     for (std::size_t c = 0; c < kColours.size(); ++c) wanted.emplace(std::pair(scene.name_of(all.patches[i]), c), i);
@@ -83,7 +85,9 @@ Radiosities radiosities_of(const Scene& scene, const SolutionFile& file) {
     wanted.erase(found);
   }
   if (!wanted.empty()) {
-    refuse_row(file, "has no radiosity of " + text::in_quotes(wanted.begin()->first.first, text::kShownName));
+    const auto& [patch, channel] = wanted.begin()->first;
+    refuse_row(file, "has no radiosity of " + text::in_quotes(patch, text::kShownName) + " in " +
+                         std::string(kChannelNames[channel]));
   }
   return all;
 }

@@ -64,22 +64,34 @@ Factors factors_of(const matrix::Factors& all) {
 
 // --- One channel ---
 
-std::string why_unbounded(const Scene& scene, const std::vector<Selection>& patches, const Numbers& reflectances) {
+Problem problem_of_unbounded(const Scene& scene, const std::vector<Selection>& patches, const System& system) {
+  constexpr double kMuchLight = 1e300;
+  Problem problem{.why = {}, .suggestion = "compute narrower view factors by --accuracy, --width or --budget"};
   std::vector<std::string> names;
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    if (reflectances[i] >= 1.0) names.push_back(scene.name_of(patches[i]));
+    if (system.reflectances[i] >= 1.0) names.push_back(scene.name_of(patches[i]));
+  }
+  if (const double most = std::ranges::max(system.emissions); names.empty() && most > kMuchLight) {
+    problem.why =
+        "Ke is up to " + text::short_number(most) + ", and doubles end near 1.8e308, below sums of such light";
+    problem.suggestion = "scale Ke down: radiosities scale with it";
+    return problem;
   }
   if (names.empty()) {
-    return "the bounds of the view factors are so wide that they do not prove that less light is reflected than "
-           "arrives";
+    problem.why =
+        "the bounds of the view factors are so wide that they do not prove that less light is reflected "
+        "than arrives";
+    return problem;
   }
   const std::size_t count = names.size();
   if (count > kMostNames) {
     names.resize(kMostNames - 1);
     names.push_back(std::to_string(count - names.size()) + " others");
   }
-  return "Kd is 1 or more on " + text::enumerate(names) +
-         ", and the bounds of the view factors do not prove that enough light is absorbed elsewhere or leaves";
+  problem.why = "Kd is 1 or more on " + text::enumerate(names) +
+                ", and the bounds of the view factors do not prove that enough light is absorbed elsewhere or leaves";
+  problem.suggestion = "lower Kd there, or " + problem.suggestion;
+  return problem;
 }
 
 double estimated_irradiance(std::span<const Entry> row, const Numbers& value) {
@@ -124,8 +136,10 @@ Channel solve_channel(const Scene& scene, const std::vector<Selection>& patches,
   const SolutionBounds bounds = bounds_of(system);
   Channel channel;
   if (bounds.upper.empty()) {
-    channel.no_bound = why_unbounded(scene, patches, system.reflectances);
-    set_unbounded(channel, system, bounds.value);
+    const Problem problem = problem_of_unbounded(scene, patches, system);
+    channel.no_bound = problem.why;
+    channel.remedy = problem.suggestion;
+    set_unbounded(channel, system, may_have_no_solution(system) ? Numbers{} : bounds.value);
   } else {
     set_bounded(channel, system, bounds);
   }
@@ -211,7 +225,7 @@ Solution solve(const Scene& scene, const Options& options, const Hooks& hooks) {
 }
 
 std::string_view claim_text(const Solution& solution, const Channel& channel) {
-  return channel.is_bounded() ? to_string(solution.claim) : "no bound";
+  return channel.is_bounded() ? to_string(solution.claim) : kNoBound;
 }
 
 }  // namespace exactff::radiosity

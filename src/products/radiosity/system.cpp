@@ -214,4 +214,8 @@ SolutionBounds bounds_of(const System& system) {
   return result;
 }
 
+bool may_have_no_solution(const System& system) {
+  return std::ranges::any_of(system.reflectances, [](double rho) { return rho >= 1.0; });
+}
+
 }  // namespace exactff::radiosity

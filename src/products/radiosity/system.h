@@ -85,5 +85,8 @@ struct SolutionBounds {
   Numbers lower, upper;  // of B; empty: z, or a double that is large enough, was not found
 };
 [[nodiscard]] SolutionBounds bounds_of(const System& system);
+// Some reflectance is 1 or more. In a closed room of reflectance 1 there is no B that an estimate could be near; where
+// there is no upper bound, this may be such a room.
+[[nodiscard]] bool may_have_no_solution(const System& system);
 
 }  // namespace exactff::radiosity

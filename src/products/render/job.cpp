@@ -57,13 +57,20 @@ whole_view::Channels Job::light_at(const Receiver& receiver, const whole_view::L
 }
 
 void Job::require_light_of_patches() const {
-  if (request_.sources.empty() && !request_.sky && request_.quantity != Quantity::kFormFactor &&
-      request_.shown == Shown::kLight) {
-    return;
+  if (!request_.sources.empty() || request_.sky) {
+    text::refuse("sources are named, and radiosities are given", "the light of all bounces comes from all patches",
+                 "leave out the radiosities, or the sources");
   }
-  text::refuse(request_.sources.empty() && !request_.sky ? "form factors are requested of given radiosities"
-                                                         : "sources are named, and radiosities are given",
-               "the light of all bounces comes from all patches", "leave out the radiosities, or the other");
+  if (request_.quantity == Quantity::kFormFactor || request_.shown != Shown::kLight) {
+    text::refuse("form factors or their slopes are requested, and radiosities are given",
+                 "a form factor does not depend on the light",
+                 "leave out the radiosities, or ask for another quantity");
+  }
+  if (request_.sides == Sides::kBoth) {
+    text::refuse("backs are to be lit, and radiosities are given",
+                 "in the solution, light that meets a back is lost, unless the back is a patch",
+                 "leave out --two-sided here, and give it to `exactff radiosity`");
+  }
 }
 
 void Job::require_possible() const {
@@ -193,7 +200,8 @@ Metadata Job::metadata() const {
     if (request_.bounds == Bounds::kAll) {
       metadata.emplace_back("bounds",
                             "lower and upper bound the sum over patches of form factor and radiosity, one "
-                            "number for each patch; not the light that varies over patches");
+                            "number for each patch; not the light that varies over patches; " +
+                                radiosity::words_of_claim(*request_.radiosities));
     }
   }
   if (const auto flipped = scene.flipped(); !flipped.empty())

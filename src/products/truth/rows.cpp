@@ -134,7 +134,8 @@ std::string Rows::head() const {
     out << "# radiosities: " << text::csv_comment(request_.radiosities->name) << ", hash "
         << radiosity::hash_of(*request_.radiosities)
         << "; total_lower and total_upper bound the sum over patches of form factor and radiosity, one number for each "
-           "patch; not the light that varies over patches\n";
+           "patch; not the light that varies over patches; "
+        << radiosity::words_of_claim(*request_.radiosities) << '\n';
   }
   out << "receiver,on,x,y,z,nx,ny,nz" << (request_.unit_normals ? ",ux,uy,uz" : "") << (request_.uv ? ",u,v" : "")
       << ",source,exact,lower,upper" << (request_.unoccluded ? ",unoccluded" : "")

@@ -198,6 +198,7 @@ TEST(Gather, RefusesWhatHasNoMeaning) {
   EXPECT_NE(refused({.quantity = Quantity::kFormFactor}).find("form factors"), std::string::npos);
   EXPECT_NE(refused({.sources = {scene.select("lamp")}}).find("sources"), std::string::npos);
   EXPECT_NE(refused({.sky = true}).find("sources"), std::string::npos);
+  EXPECT_NE(refused({.sides = render::Sides::kBoth}).find("backs"), std::string::npos);
 }
 
 TEST(Variation, IsNoneInAFurnaceAndLargestWhereLightFalls) {
@@ -249,6 +250,19 @@ TEST_F(SolutionFiles, ReadBackToTheSameBits) {
   EXPECT_EQ(a.lower, b.lower);
   EXPECT_EQ(a.upper, b.upper);
   EXPECT_EQ(b.name, "s.csv");
+  EXPECT_EQ(solution.claim, Claim::kEstimated);
+  EXPECT_EQ(a.claim, Claim::kEstimated);
+  EXPECT_EQ(b.claim, Claim::kEstimated);
+}
+
+TEST_F(SolutionFiles, KeepTheirClaim) {
+  const Scene scene = plates();
+  const Solution proved = solve(scene, {.factors = {.accuracy = 1e-2, .certify = true}});
+  const std::string text = csv_text(scene, proved, {});
+  EXPECT_EQ(read_csv(file(text)).claim, Claim::kCertified);
+  EXPECT_EQ(read_csv(file(replaced(text, ",certified,", ",estimated,"))).claim, Claim::kEstimated);
+  EXPECT_EQ(read_csv(file(replaced(text, ",certified,", ",topology-proved,"))).claim, Claim::kEstimated);
+  EXPECT_NE(said(scene, replaced(text, ",certified,", ",rubbish,")).find("unknown claim 'rubbish'"), std::string::npos);
 }
 
 TEST_F(SolutionFiles, OfOtherScenesOrWithoutBoundsAreRefused) {
@@ -262,7 +276,7 @@ TEST_F(SolutionFiles, OfOtherScenesOrWithoutBoundsAreRefused) {
   EXPECT_NE(
       said(scene, replaced(text, "ceiling,green", "roof,green")).find("of 'roof', which is no patch of the scene"),
       std::string::npos);
-  EXPECT_NE(said(scene, text.substr(0, text.find("lamp,"))).find("no radiosity of 'lamp'"), std::string::npos);
+  EXPECT_NE(said(scene, text.substr(0, text.find("lamp,"))).find("no radiosity of 'lamp' in red"), std::string::npos);
   EXPECT_NE(said(scene, replaced(text, "# scene hash", "# hash")).find("to which scene"), std::string::npos);
   EXPECT_NE(said(scene, replaced(text, "lamp,red,4", "lamp,red,5")).find("within its bounds"), std::string::npos);
   const std::size_t row = text.find("floor,blue,");

@@ -142,6 +142,7 @@ TEST(Radiosity, OfAClosedRoomOfReflectanceOneHasNoUpperBound) {
   for (const BoundedValue& q : solution.channels[0].radiosity) {
     EXPECT_EQ(q.lower, 1.0);
     EXPECT_EQ(q.upper, std::numeric_limits<double>::infinity());
+    EXPECT_TRUE(std::isnan(q.value)) << q.value << ": there is no such number";
   }
   EXPECT_EQ(claim_text(solution, solution.channels[0]), "no bound");
   EXPECT_TRUE(solution.channels[1].is_bounded());
@@ -157,6 +158,14 @@ TEST(Radiosity, SaysThatWidthsAreToBlame) {
   EXPECT_FALSE(solution.is_bounded());
   EXPECT_NE(solution.channels[0].no_bound.find("so wide"), std::string::npos);
   EXPECT_FALSE(std::isnan(solution.channels[0].radiosity[0].value));
+}
+
+TEST(Radiosity, SaysThatLightIsTooBrightForDoubles) {
+  const Solution solution = solution_of(cube({0.5, 0.5, 0.5}, {1.5e308, 1, 1}), 1e-3);
+  EXPECT_NE(solution.channels[0].no_bound.find("Ke is up to 1.5e+308"), std::string::npos)
+      << solution.channels[0].no_bound;
+  EXPECT_NE(solution.channels[0].remedy.find("scale Ke down"), std::string::npos);
+  EXPECT_TRUE(solution.channels[1].is_bounded());
 }
 
 TEST(Radiosity, RefusesPatchesOfSeveralMaterialsByName) {
@@ -500,6 +509,8 @@ TEST_F(RadiosityCommand, TakesAFinishedMatrixOfTheSameScene) {
   EXPECT_EQ(command({"radiosity", scene, "--matrix", file("less.csv"), "--csv"}).output, taken.output);
   EXPECT_EQ(command({"radiosity", scene, "--matrix", file("m.csv"), "--divide", "0.5"}).exit_code, 2);
   EXPECT_EQ(command({"radiosity", scene, "--matrix", file("m.csv"), "--accuracy", "1e-3"}).exit_code, 2);
+  EXPECT_EQ(command({"radiosity", scene, "--matrix", file("m.csv"), "--force", "-o", file("m.csv")}).exit_code, 2);
+  EXPECT_EQ(command({"radiosity", scene, "--matrix", file("m.csv"), "--csv"}).output, taken.output);
 }
 
 TEST_F(RadiosityCommand, KeepsViewFactorsOnlyUntilItIsDone) {
