@@ -34,7 +34,7 @@ void CsvTable::read_names() {
     if (!content.empty()) comments_.emplace_back(trimmed(content.substr(1)));
   }
   complain("the file has no column names", "columns are identified by their names",
-           "begin the file with a line such as receiver,source,value");
+           "begin the file with a line of names, separated by commas");
 }
 
 void CsvTable::take_names() {

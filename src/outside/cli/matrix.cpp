@@ -36,11 +36,11 @@ namespace {
 constexpr const char* kMatrixFooter =
     "F_ij is the share of the light leaving patch i, in all directions, that reaches patch j: the mean over i of the\n"
     "form factor from a point to j. Its interval is proved or estimated. 'zero' is proved. 'estimated' says that the\n"
-    "error is an estimate, with all roundings in it: by cells, on each of which what is seen is proved, from two "
-    "rules\n"
-    "of quadrature; or, where so much lies between that this costs less, by points, from the exact form factors of\n"
-    "random points, but with a probability of 1e-6. A warning counts the entries that are wider than\n"
-    "the accuracy.\n"
+    "error is an estimate, with all roundings in it: by cells, on each of which what is seen is proved, from "
+    "rules of\n"
+    "quadrature; or, where so much lies between that this costs less, by points, from the exact form factors of\n"
+    "random points, but with a probability of 1e-6. A warning counts the entries that are wider than the accuracy,\n"
+    "in this direction or from the other patch.\n"
     "With --claim certified, or --certify, every entry is 'zero' or 'certified': the remainder of the quadrature and\n"
     "all roundings are proved as well. It costs up to a few times as much.\n"
     "With --backs and --to all,sky each row also has what meets the backs of faces, and what is open. Then it must\n"
@@ -201,6 +201,7 @@ void check_shard_and_resume(const MatrixArguments& args) {
 
 void check_outputs(const MatrixArguments& args) {
   check_shard_and_resume(args);
+  require_not_read(args.csv, {args.scene.path});
   std::vector<OutputFile> before;
   if (args.keeps_work()) {
     jobs::require_free(args.csv, args.existing());

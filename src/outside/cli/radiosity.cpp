@@ -48,7 +48,9 @@ constexpr const char* kRadiosityFooter =
     "of\n"
     "the view factors do not prove that less light is reflected than arrives, as in a closed room of Kd 1, there is "
     "no\n"
-    "upper bound; the output says so and why, and the exit code is 3. 'radiosity' is then an estimate.\n"
+    "upper bound; the output says so and why, and the exit code is 3. 'radiosity' is then an estimate or, where some "
+    "Kd\n"
+    "is 1, unknown.\n"
     "What is emitted must be what is absorbed, meets backs of faces and leaves; if it is not, the exit code is 1.\n"
     "'variation' says where patches are too large: the largest distance of the light that leaves single points of a "
     "patch\n"
@@ -167,7 +169,8 @@ void print_balance(const Solution& solution, std::size_t channels) {
 
 void print_claims(const Solution& solution, bool balanced) {
   if (solution.is_bounded()) {
-    std::cout << "\nThe bounds hold if those of the view factors do: these are " << to_string(solution.claim) << ".\n";
+    std::cout << "\nThe bounds hold if those of the view factors do: these are "
+              << (solution.claim == Claim::kZero ? "all proved to be zero" : to_string(solution.claim)) << ".\n";
   }
   const std::vector<std::string>& reasons = solution.reasons_against_balance;
   if (!reasons.empty()) {
@@ -180,14 +183,16 @@ void print_claims(const Solution& solution, bool balanced) {
   }
 }
 
-// The patch over which radiosity varies most beside its own.
+// The patch over which radiosity varies most, if bounds do not leave as much open.
 void print_variation(const Scene& scene, const Solution& solution, std::size_t channels) {
   double most = 0.0;
   std::string words;
   for (std::size_t c = 0; c < channels; ++c) {
     const Channel& channel = solution.channels[c];
     for (std::size_t i = 0; i < solution.patches.size(); ++i) {
-      if (!(channel.variation[i] > most)) continue;
+      const BoundedValue& b = channel.radiosity[i];
+      const bool is_within_bounds = channel.is_bounded() && channel.variation[i] <= b.upper - b.lower;
+      if (!(channel.variation[i] > most) || is_within_bounds) continue;
       most = channel.variation[i];
       words = shown_name(scene, solution.patches[i]) +
               (channels > 1 ? ", " + std::string(kChannelNames[c]) : std::string());
@@ -287,6 +292,7 @@ void check_outputs(const RadiosityArguments& args) {
                  "name a file, for example -o radiosities.csv");
   }
   if (!args.output.empty()) require_free_file(args.output, args.force);
+  require_not_read(args.output, {args.scene.path, args.matrix});
   std::vector<OutputFile> before;
   if (!args.output.empty()) before.push_back({"-o", args.output});
   if (args.keeps_work()) {
@@ -311,10 +317,13 @@ void warn_of_no_bound(const Solution& solution) {
   for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
     const Channel& channel = solution.channels[c];
     if (channel.is_bounded()) continue;
-    print_warnings(std::vector<Problem>{
-        {.what = "there is no bound for " + std::string(kChannelNames[c]) + ", and what is printed is an estimate",
-         .why = channel.no_bound,
-         .suggestion = "lower Kd where it is 1, or compute narrower view factors by --accuracy and --budget"}});
+    const bool is_estimated = std::ranges::none_of(
+        channel.radiosity, [](double value) { return std::isnan(value); }, &BoundedValue::value);
+    print_warnings(
+        std::vector<Problem>{{.what = "there is no bound for " + std::string(kChannelNames[c]) +
+                                      (is_estimated ? ", and what is printed is an estimate" : ", nor an estimate"),
+                              .why = channel.no_bound,
+                              .suggestion = channel.remedy}});
   }
 }
 
@@ -514,7 +523,8 @@ Command add_radiosity(CLI::App& app) {
   command
       ->add_option("--width", args->options.width,
                    "Largest width of the bounds of a radiosity, as a share of the brightest of its channel")
-      ->type_name("FLOAT");
+      ->type_name("FLOAT")
+      ->check(flags::is_positive);
   CLI::Option* backs =
       command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces, for the balance");
   const ClaimOptions claims = add_claim(*command, args->options.factors.certify);

@@ -126,6 +126,7 @@ void check_arguments(const RenderArguments& args) {
     text::refuse("--layers needs an EXR file and no --against", "a PNG file and a picture of errors have no layers",
                  "name a .exr file, without --against");
   }
+  require_not_read(args.image, {args.scene.path, args.solution.file});
   check_files({args.image}, {args.doubles, args.bounds});
 }
 
@@ -322,7 +323,7 @@ void add_output_flags(CLI::App& app, RenderArguments& args) {
          "Also write the numbers as a NumPy file of doubles, shape (height, width, 3), NaN where nothing is met")
       ->type_name("FILE");
   app.add_option("--bounds", args.bounds,
-                 "Also write their proved bounds as a NumPy file, shape (2, height, width, 3): lower, upper")
+                 "Also write their bounds as a NumPy file, shape (2, height, width, 3): lower, upper")
       ->type_name("FILE");
 }
 

@@ -191,6 +191,7 @@ int write_to_standard_output(const TruthArguments& args) {
 // Before anything that takes time.
 void check_outputs(const TruthArguments& args) {
   check_totals(args);
+  require_not_read(args.file, {args.scene.path, args.solution.file});
   jobs::require_free(args.file, args.existing());
   const std::vector<std::string> further = args.further.flags();
   if (further.empty()) return;

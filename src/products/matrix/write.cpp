@@ -118,7 +118,7 @@ Matrix read(const Request& request, const fs::path& file) {
                     table.back.empty() != request.options.backs && table.open.empty() != request.options.open;
   if (!same) {
     text::refuse(file, "holds other rows or columns than those that are asked for",
-                 "its entries would be taken for others", "compute it again with --force, or name another file");
+                 "its entries would be taken for others", "compute the matrix again, or name another file");
   }
   return {{request.from, request.to, std::move(table.entries)}, std::move(table.back), std::move(table.open)};
 }
