@@ -160,8 +160,8 @@ class Scene:
 
     def with_two_sided(self, *names: str) -> Scene:
         """The same scene with the backs of these patches or faces as further patches, ``NAME (back)``: every face gets a
-        twin that is turned round. Factors between other patches stay the same; what met the backs meets the twins.
-        Raises InputError for a face that is not planar."""
+        twin that is turned round. Factors between other patches stay the same numbers, perhaps in other intervals; what
+        met the backs meets the twins. Raises InputError for a face that is not planar."""
         return self._changed(lambda listed: _exactff.with_two_sided(self._scene, listed), names)
 
     def divided(self, length: float) -> Scene:
