@@ -1,8 +1,5 @@
 #!/usr/bin/env bash
 # Times view factors from patch to patch on one thread: processor seconds of whole runs of `exactff matrix`, medians.
-# Of 4,872 patches every 200th row is computed, on all threads. The seconds are those of all rows by that share, after
-# the time of the first row alone is taken off, so that reading the scene counts once. All rows take half of that,
-# because each pair is computed once.
 # Usage: time_view_factors.sh [RUNS] (3), after validation/test.sh has built everything. EXACTFF_BUILD names another
 # build folder.
 set -euo pipefail
@@ -37,7 +34,6 @@ OBJ
 "$build/exactff_generate" cube-room --n 1 -o room.obj
 "$build/exactff_generate" cube-room --n 4 -o cube.obj
 "$build/exactff_generate" three-cube-room --n 8 -o cubes.obj
-"$build/exactff_generate" building --n 2 -o building.obj
 
 TIMEFORMAT='%U'
 sum_of() { # COLUMN: of the pairs in factors.csv
@@ -61,14 +57,3 @@ row 'the same, estimated' room.obj
 row '102 patches, the cube tilted, 1e-6, certified' cube.obj --certify
 row 'the same, estimated' cube.obj
 row '402 patches, three cubes, 1e-6, estimated' cubes.obj
-
-rows=$(awk '$1 == "g" && ++n % 200 == 100 { print $2 }' building.obj | paste -sd,)
-TIMEFORMAT='%R'
-for which in "${rows%%,*}" "$rows"; do
-  { time "$build/exactff" matrix building.obj --from "$which" --accuracy 1e-3 --budget 1000 --force -o factors.csv \
-    > log 2>&1; } 2>> times
-done
-printf '| 4,872 patches of a furnished building, 1e-3, budget 1,000, all threads (%.1f entries of a row are wider) | | | %.0f |\n' \
-  "$(awk -F, '!/^#/ && $8 == "no" { ++wide } !/^#/ { ++all } END { print 4872 * wide / all }' factors.csv)" \
-  "$(awk -v further="$(tr ',' '\n' <<< "$rows" | wc -l)" \
-    'NR == 1 { first = $1 } END { print first + 0.5 * ($1 - first) * 4871 / (further - 1) }' times)"

@@ -29,7 +29,7 @@ constexpr Experiment kExperiments[] = {
     {"closure", "a closed room: the form factors from a point to all patches sum to 1", &closure},
     {"gradient", "finite differences of every method against exact derivatives, by step", &gradient_differences},
     {"meshing", "the Cornell box after all bounces: error against the size of cells, down to 1/8 of the box", &meshing},
-    {"meshing-fine", "the same down to 1/16: an hour or more", &fine_meshing, true}};
+    {"meshing-fine", "the same down to 1/16: a quarter of an hour", &fine_meshing, true}};
 
 }  // namespace
 
