@@ -80,8 +80,8 @@ struct Reciprocity {
 // twin in its plane that is turned round and has the same material. A face in several selections gets one twin. All
 // patches and faces of `scene` keep their ids. Coplanar faces hide nothing from each other, so every other factor
 // is the same number, and what met the backs meets the twins. Its interval may be another one, since twins take part in
-// the search for what hides something. Throws InputError for a face that is not planar, and if
-// there is a patch of such a name.
+// the search for what hides something. Throws InputError for a face that is not planar, and if there is a patch of such
+// a name.
 [[nodiscard]] Scene with_two_sided(const Scene& scene, std::span<const Selection> selections);
 
 // The weaker of two claims, the one to be made of a sum.

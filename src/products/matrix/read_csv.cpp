@@ -11,22 +11,13 @@
 
 #include "exactff/matrix.h"
 #include "kernel/float_environment.h"
+#include "matrix/words.h"
 #include "text/csv_table.h"
 #include "text/phrases.h"
 
 namespace exactff::matrix {
 namespace {
 
-template <class Word>
-std::optional<Word> named(std::string_view word) {
-  for (int i = 0; !to_string(static_cast<Word>(i)).empty(); ++i) {
-    if (word == to_string(static_cast<Word>(i))) return static_cast<Word>(i);
-  }
-  return std::nullopt;
-}
-
-// The words for two kinds of estimates that files had before `way` was a column.
-constexpr std::string_view kOldByCells = "topology-proved", kOldByPoints = "statistical";
 // A way of files with drafts: the mean of whole views.
 constexpr std::string_view kOldByViews = "views";
 
@@ -100,7 +91,7 @@ class TableReader {
 
   void take_words(ViewFactor& f) {
     const std::string claim = csv_.field(claim_);
-    const bool is_old = claim == kOldByCells || claim == kOldByPoints;
+    const bool is_old = is_old_claim(claim);
     table_.has_old_claims = table_.has_old_claims || is_old;
     f.claim = is_old ? Claim::kEstimated : known<Claim>("claim", claim);
     f.way = way_ ? known_way(csv_.field(*way_)) : claim == kOldByPoints ? Way::kPoints : Way::kCells;

@@ -9,6 +9,7 @@
 #include "exactff/radiosity.h"
 #include "exactff/version.h"
 #include "kernel/float_environment.h"
+#include "matrix/words.h"
 #include "text/csv_row.h"
 #include "text/csv_table.h"
 #include "text/escape.h"
@@ -137,17 +138,15 @@ class FileReader {
                           BoundedValue{value, lower, upper}});
   }
 
-  // Until 2026-11-25, estimates had two other names.
   void take_claim(const std::string& text) {
     if (text == kNoBound) return;
-    const bool is_old = text == "topology-proved" || text == "statistical";
-    for (const Claim claim : {Claim::kZero, Claim::kCertified, Claim::kEstimated}) {
-      if (text != to_string(claim) && !(is_old && claim == Claim::kEstimated)) continue;
-      file_.claim = matrix::weaker(file_.claim, claim);
+    const std::optional<Claim> claim = matrix::claim_named(text);
+    if (!claim) {
+      csv_.complain("unknown claim " + text::in_quotes(text), "it says how strong the bounds are",
+                    "use the file as `exactff radiosity` wrote it");
       return;
     }
-    csv_.complain("unknown claim " + text::in_quotes(text), "it says how strong the bounds are",
-                  "use the file as `exactff radiosity` wrote it");
+    file_.claim = matrix::weaker(file_.claim, *claim);
   }
 
   text::CsvTable csv_;

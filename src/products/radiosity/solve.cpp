@@ -64,34 +64,37 @@ Factors factors_of(const matrix::Factors& all) {
 
 // --- One channel ---
 
-Problem problem_of_unbounded(const Scene& scene, const std::vector<Selection>& patches, const System& system) {
-  constexpr double kMuchLight = 1e300;
-  Problem problem{.why = {}, .suggestion = "compute narrower view factors by --accuracy, --width or --budget"};
+std::string words_of_white(const Scene& scene, const std::vector<Selection>& patches, const Numbers& reflectances) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    if (system.reflectances[i] >= 1.0) names.push_back(scene.name_of(patches[i]));
+    if (reflectances[i] >= 1.0) names.push_back(scene.name_of(patches[i]));
   }
-  if (const double most = std::ranges::max(system.emissions); names.empty() && most > kMuchLight) {
-    problem.why =
-        "Ke is up to " + text::short_number(most) + ", and doubles end near 1.8e308, below sums of such light";
-    problem.suggestion = "scale Ke down: radiosities scale with it";
-    return problem;
-  }
-  if (names.empty()) {
-    problem.why =
-        "the bounds of the view factors are so wide that they do not prove that less light is reflected "
-        "than arrives";
-    return problem;
-  }
-  const std::size_t count = names.size();
-  if (count > kMostNames) {
+  if (const std::size_t count = names.size(); count > kMostNames) {
     names.resize(kMostNames - 1);
     names.push_back(std::to_string(count - names.size()) + " others");
   }
-  problem.why = "Kd is 1 or more on " + text::enumerate(names) +
-                ", and the bounds of the view factors do not prove that enough light is absorbed elsewhere or leaves";
-  problem.suggestion = "lower Kd there, or " + problem.suggestion;
-  return problem;
+  return text::enumerate(names);
+}
+
+// Why there is no bound, and what would give one.
+Problem problem_of_unbounded(const Scene& scene, const std::vector<Selection>& patches, const System& system) {
+  constexpr double kMuchLight = 1e300;
+  const std::string narrower = "compute narrower view factors by --accuracy, --width or --budget";
+  if (may_have_no_solution(system)) {
+    return {.why = "Kd is 1 or more on " + words_of_white(scene, patches, system.reflectances) +
+                   ", and the bounds of the view factors do not prove that enough light is absorbed elsewhere or "
+                   "leaves",
+            .suggestion = "lower Kd there, or " + narrower};
+  }
+  if (const double most = std::ranges::max(system.emissions); most > kMuchLight) {
+    return {
+        .why = "Ke is up to " + text::short_number(most) + ", and doubles end near 1.8e308, below sums of such light",
+        .suggestion = "scale Ke down: radiosities scale with it"};
+  }
+  return {.why =
+              "the bounds of the view factors are so wide that they do not prove that less light is reflected than "
+              "arrives",
+          .suggestion = narrower};
 }
 
 double estimated_irradiance(std::span<const Entry> row, const Numbers& value) {
@@ -136,9 +139,9 @@ Channel solve_channel(const Scene& scene, const std::vector<Selection>& patches,
   const SolutionBounds bounds = bounds_of(system);
   Channel channel;
   if (bounds.upper.empty()) {
-    const Problem problem = problem_of_unbounded(scene, patches, system);
-    channel.no_bound = problem.why;
-    channel.remedy = problem.suggestion;
+    Problem problem = problem_of_unbounded(scene, patches, system);
+    channel.no_bound = std::move(problem.why);
+    channel.remedy = std::move(problem.suggestion);
     set_unbounded(channel, system, may_have_no_solution(system) ? Numbers{} : bounds.value);
   } else {
     set_bounded(channel, system, bounds);
