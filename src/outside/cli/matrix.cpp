@@ -42,7 +42,7 @@ constexpr const char* kMatrixFooter =
     "random points, but with a probability of 1e-6. A warning counts the entries that are wider than the accuracy,\n"
     "in this direction or from the other patch.\n"
     "With --claim certified, or --certify, every entry is 'zero' or 'certified': the remainder of the quadrature and\n"
-    "all roundings are proved as well. It costs up to a few times as much.\n"
+    "all roundings are proved as well. It costs up to a few times as much, and less if the accuracy is below 1e-9.\n"
     "With --backs and --to all,sky each row also has what meets the backs of faces, and what is open. Then it must\n"
     "add up to 1; if a row does not, the exit code is 1. Likewise if the bounds of the two directions of a pair\n"
     "contradict each other, with --both-directions. --two-sided wall adds the patch 'wall (back)', for rows and\n"

@@ -35,8 +35,7 @@ void LateNote::tell_if_late() {
 std::string words_on_speed(const matrix::Request& request) {
   const ViewFactorOptions& factors = request.options.factors;
   constexpr double kCoarse = 1e-3;
-  constexpr double kFine =
-      1e-9;  // below, a certified entry costs less: fewer cells suffice (validation/view_factors.md)
+  constexpr double kFine = 1e-9;  // below, certified entries cost less (validation/view_factors.md)
   std::vector<std::string> ways;
   if (factors.certify && factors.accuracy >= kFine) ways.emplace_back("no --certify, so that errors are estimated");
   if (!factors.certify && factors.accuracy < kFine)

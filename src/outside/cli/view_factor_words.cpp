@@ -25,31 +25,25 @@ struct Wide {
   [[nodiscard]] double widest() const { return std::max(width, back); }
 };
 
-Wide wide_entry(std::size_t row, std::string to, const ViewFactor& f) {
-  const double width = f.upper - f.lower;
-  return {row, std::move(to), width, f.area_to > 0.0 ? width * (f.area_from / f.area_to) : 0.0};
-}
-
 std::vector<Wide> wide_entries(const Scene& scene, const matrix::Matrix& matrix, Limit limit) {
   std::vector<Wide> wide;
   const matrix::Factors& all = matrix.factors;
-  const auto look_at = [&](std::size_t row, const auto& name, const ViewFactor& f) {
-    if (!f.accurate && f.limit == limit) wide.push_back(wide_entry(row, name(), f));
+  const auto look_at = [&](std::size_t row, const auto& name, const ViewFactor& f, double area_to) {
+    if (f.accurate || f.limit != limit) return;
+    const double width = f.upper - f.lower;
+    wide.push_back({row, name(), width, area_to > 0.0 ? width * (f.area_from / area_to) : 0.0});
   };
   for (std::size_t i = 0; i < all.from.size(); ++i) {
     for (std::size_t j = 0; j < all.to.size(); ++j) {
       look_at(
-          i, [&] { return text::in_quotes(scene.name_of(all.to[j])); }, all.at(i, j));
+          i, [&] { return text::in_quotes(scene.name_of(all.to[j])); }, all.at(i, j), all.at(i, j).area_to);
     }
     if (!matrix.back.empty())
       look_at(
-          i, [] { return std::string(matrix::kBack); }, matrix.back[i]);
-    if (!matrix.open.empty()) {
-      ViewFactor open = matrix.open[i];
-      open.area_to = 0.0;  // the sky has none
+          i, [] { return std::string(matrix::kBack); }, matrix.back[i], matrix.back[i].area_to);
+    if (!matrix.open.empty())
       look_at(
-          i, [] { return std::string(matrix::kOpen); }, open);
-    }
+          i, [] { return std::string(matrix::kOpen); }, matrix.open[i], 0.0);
   }
   std::ranges::stable_sort(wide, std::ranges::greater(), &Wide::widest);
   return wide;

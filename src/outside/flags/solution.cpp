@@ -20,13 +20,12 @@ std::optional<double> agreed_length(const std::optional<double>& flag, const rad
 }
 
 // What cannot be done to this scene is what the file wants, not the user.
-Scene made_as_in(const radiosity::SolutionFile& file, const SceneArguments& scene) {
+Scene made_as_in(const radiosity::SolutionFile& file, SceneArguments scene) {
+  const std::optional<double> length = agreed_length(std::exchange(scene.divide, {}), file);
   const std::vector<std::string>& two_sided = file.origin.two_sided;
-  SceneArguments undivided = scene;
-  undivided.divide.reset();
-  Scene made = undivided.load();
+  Scene made = scene.load();
   try {
-    if (scene.divide) made = divided_with_note(made, *scene.divide);
+    if (length) made = divided_with_note(made, *length);
     if (!two_sided.empty()) made = matrix::with_two_sided(made, selections_named(made, two_sided));
   } catch (const InputError& error) {
     text::refuse(file.file, "holds radiosities of a scene that was changed as this one cannot be",
@@ -48,9 +47,7 @@ void SolutionArgument::add_to(CLI::App& app) {
 LitScene load(const SceneArguments& scene, const SolutionArgument& solution) {
   if (!solution.is_given()) return {scene.load(), std::nullopt};
   const radiosity::SolutionFile file = radiosity::read_csv(solution.file);
-  SceneArguments divided = scene;
-  divided.divide = agreed_length(scene.divide, file);
-  Scene made = made_as_in(file, divided);
+  Scene made = made_as_in(file, scene);
   radiosity::Radiosities radiosities = radiosity::radiosities_of(made, file);
   return {std::move(made), std::move(radiosities)};
 }
