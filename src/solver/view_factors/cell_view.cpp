@@ -180,12 +180,15 @@ bool CellView::is_outside(const Solid& solid) {
          });
 }
 
+// True if it shows the cell the back of a closed surface, of which it may turn out to be spare.
+bool CellView::is_back(const Candidate& candidate) const {
+  const std::uint32_t id = sight_.occluders[candidate.occluder].solid;
+  return id != kNoSolid && candidate.facing != kMixed && (candidate.facing > 0) == sight_.solids[id].turned_inside_out;
+}
+
 // True if the pieces of its closed surface that show the cell their fronts cover all that the occluder does.
 bool CellView::is_spare_back(const Candidate& candidate) {
-  const std::uint32_t id = sight_.occluders[candidate.occluder].solid;
-  if (id == kNoSolid || candidate.facing == kMixed) return false;
-  const Solid& solid = sight_.solids[id];
-  return (candidate.facing > 0) == solid.turned_inside_out && is_outside(solid);
+  return is_back(candidate) && is_outside(sight_.solids[sight_.occluders[candidate.occluder].solid]);
 }
 
 // Finds how the occluder faces the cell and whether it can cover anything. True if it hides the whole source. One that
@@ -211,11 +214,13 @@ bool CellView::sort_out(Candidate& candidate) {
   return false;
 }
 
-// Takes out those that another one covers from all of the cell: the union of the shadows is the same without them.
+// Takes out those that another one covers from all of the cell: the union of the shadows is the same without them. A
+// back covers nothing here: it may be taken out itself, for a part of the cell, and then others of its surface must be
+// there.
 void CellView::drop_covered(Candidates& candidates) {
   for (Candidate& inner : candidates) {
     const auto covers_it = [&](const Candidate& outer) {
-      return outer.facing != 0 && outer.facing != kMixed && outer.occluder != inner.occluder &&
+      return outer.facing != 0 && outer.facing != kMixed && outer.occluder != inner.occluder && !is_back(outer) &&
              holds(ring_of(outer), sight_.occluders[inner.occluder].ring);
     };
     if (std::ranges::any_of(candidates, covers_it)) inner.facing = 0;

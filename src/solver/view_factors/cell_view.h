@@ -143,6 +143,7 @@ class CellView {
   bool is_beside(const Ring& ring, const Ring& other);
   bool holds(const Ring& ring, const Ring& other);
   bool is_outside(const Solid& solid);
+  [[nodiscard]] bool is_back(const Candidate& candidate) const;
   bool is_spare_back(const Candidate& candidate);
   bool sort_out(Candidate& candidate);
   void drop_covered(Candidates& candidates);
