@@ -3,12 +3,17 @@
 //   2. sort the edges of the others by their ends;
 //   3. join the pieces at each edge, and mark where an edge does not cancel; on request only after such edges have been
 //      cut where ends of others lie on them;
-//   4. each connected set of pieces without a mark is a closed surface.
+//   4. on request, unmark edges of a set of pieces if all of them lie in one plane, and the set on one side;
+//   5. each connected set of pieces without a mark is a closed surface.
 #include "scene/closed_surfaces.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <iterator>
+#include <map>
 #include <numeric>
 
+#include "kernel/plane_through.h"
 #include "scene/junctions.h"
 #include "scene/places.h"
 #include "scene/scene_data.h"
@@ -44,6 +49,7 @@ class Finder {
     for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
       if (open_[piece] != 0) open_[root(piece)] = 1;
     }
+    find_rims();
     return true;
   }
 
@@ -52,6 +58,10 @@ class Finder {
     return piece;
   }
   [[nodiscard]] bool is_closed(std::uint32_t root) const { return open_[root] == 0; }
+  [[nodiscard]] std::optional<ClosedSurface::Rim> rim_of(std::uint32_t root) const {
+    const auto rim = rims_.find(root);
+    return rim == rims_.end() ? std::nullopt : std::optional(rim->second);
+  }
 
  private:
   template <class Take>
@@ -69,6 +79,9 @@ class Finder {
   void join_at_edges();
   void join(std::uint32_t low, std::span<const DirectedEdge> edge);
   void join_at_junctions();
+  void find_rims();
+  [[nodiscard]] bool find_plane(ClosedSurface::Rim& rim) const;
+  void turn_to_surfaces();
 
   const Scene& scene_;
   const std::span<const std::uint32_t> places_;
@@ -76,20 +89,26 @@ class Finder {
   std::vector<std::uint32_t> parent_;  // by piece
   std::vector<std::uint8_t> open_;     // by piece
   std::vector<DirectedEdge> edges_;
-  std::vector<std::uint32_t> begin_;      // into edges_, by lower place, one more at the end
-  std::vector<EdgeOfPiece> uncancelled_;  // edges that are to be cut
+  std::vector<std::uint32_t> begin_;                  // into edges_, by lower place, one more at the end
+  std::vector<EdgeOfPiece> uncancelled_;              // edges that are to be cut
+  std::vector<EdgeOfPiece> of_holes_;                 // of these, cut, what does not cancel
+  std::map<std::uint32_t, ClosedSurface::Rim> rims_;  // by root
 };
 
 void Finder::leave_out_pieces() {
   std::vector<std::uint32_t> uses(places_.size(), 0);
   const auto for_each_place = [&](const auto& take) {
     for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
+      if (scene_.pieces()[piece].transparent) continue;
       for (const std::uint32_t corner : scene_.corners(scene_.pieces()[piece])) take(piece, places_[corner]);
     }
   };
+  for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
+    if (scene_.pieces()[piece].transparent) open_[piece] = 1;
+  }
   for_each_place([&](std::uint32_t, std::uint32_t place) { ++uses[place]; });
   for_each_place([&](std::uint32_t piece, std::uint32_t place) {
-    if (uses[place] < 2 || scene_.pieces()[piece].transparent) open_[piece] = 1;
+    if (uses[place] < 2) open_[piece] = 1;
   });
 }
 
@@ -137,8 +156,67 @@ void Finder::join_at_junctions() {
   cut_at_junctions(uncancelled_, scene_.vertices());
   exactff::for_each_edge(uncancelled_, [&](auto first, auto last) {
     for (auto use = first; use != last; ++use) parent_[root(use->piece)] = root(first->piece);
-    if (balance_of(first, last) != 0) open_[first->piece] = 1;
+    const std::ptrdiff_t balance = balance_of(first, last);
+    for (std::ptrdiff_t i = 0; i < std::abs(balance); ++i) {
+      of_holes_.push_back({first->low, first->high, first->piece, balance > 0});
+    }
   });
+}
+
+void Finder::find_rims() {
+  for (const EdgeOfPiece& edge : of_holes_) {
+    const std::uint32_t whole = root(edge.piece);
+    if (open_[whole] != 0) continue;
+    rims_[whole].edges.emplace_back(edge.upwards ? edge.low : edge.high, edge.upwards ? edge.high : edge.low);
+  }
+  for (auto rim = rims_.begin(); rim != rims_.end();) {
+    const bool has_plane = find_plane(rim->second);
+    if (!has_plane) open_[rim->first] = 1;
+    rim = has_plane ? std::next(rim) : rims_.erase(rim);
+  }
+  turn_to_surfaces();
+}
+
+// False if the edges do not lie in one plane, or on one line.
+bool Finder::find_plane(ClosedSurface::Rim& rim) const {
+  const auto vertices = scene_.vertices();
+  const auto [first, second] = rim.edges.front();
+  const Vec3 &a = vertices[first], &b = vertices[second];
+  const auto third = std::ranges::find_if(rim.edges, [&](const auto& edge) {
+    return edge.first != first && edge.first != second && !are_straight(a, b, vertices[edge.first]);
+  });
+  if (third == rim.edges.end()) return false;
+  rim.plane = {a, b, vertices[third->first]};
+  const kernel::PlaneThrough plane(rim.plane[0], rim.plane[1], rim.plane[2]);
+  return std::ranges::all_of(rim.edges, [&](const auto& edge) { return plane.side_of(vertices[edge.first]) == 0; });
+}
+
+// Of surfaces that lie on both sides of the plane, or in it, the edges stay marked.
+void Finder::turn_to_surfaces() {
+  struct Side {
+    kernel::PlaneThrough plane;
+    bool before = false, behind = false;
+  };
+  std::map<std::uint32_t, Side> sides;
+  for (const auto& [whole, rim] : rims_) sides.try_emplace(whole, Side{{rim.plane[0], rim.plane[1], rim.plane[2]}});
+  if (sides.empty()) return;
+  for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
+    const auto found = sides.find(root(piece));
+    if (found == sides.end()) continue;
+    for (const std::uint32_t corner : scene_.corners(scene_.pieces()[piece])) {
+      const int side = found->second.plane.side_of(scene_.vertices()[corner]);
+      found->second.before = found->second.before || side > 0;
+      found->second.behind = found->second.behind || side < 0;
+    }
+  }
+  for (const auto& [whole, side] : sides) {
+    if (side.before == side.behind) {
+      open_[whole] = 1;
+      rims_.erase(whole);
+    } else if (side.behind) {
+      std::swap(rims_[whole].plane[0], rims_[whole].plane[1]);
+    }
+  }
 }
 
 // Six times the volume between the piece and a point.
@@ -172,7 +250,7 @@ ClosedSurfaces::ClosedSurfaces(const Scene& scene, Edges edges) {
     const Vec3& first = scene.vertices()[scene.corners(piece).front()];
     if (of_piece_[root] == kNone) {
       of_piece_[root] = static_cast<std::uint32_t>(surfaces_.size());
-      surfaces_.push_back({{first, first}});
+      surfaces_.push_back({.box = {first, first}, .rim = finder.rim_of(root)});
       volumes.push_back(0.0);
       apexes.push_back(first);
     }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "kernel/poll.h"
 #include "kernel/vec.h"
 #include "view_factors/patch_parts.h"
 
@@ -23,10 +24,12 @@ int sign_of_dot(const Plane& plane, const std::array<int, 3>& direction) {
   return sgn(sum);
 }
 
-// From a point on in a direction, without the point itself.
+// From just above a point of a plane on, in a direction: back through the point, if the direction leads below the
+// plane.
 class Ray {
  public:
-  Ray(const Point& from, const std::array<int, 3>& direction) : from_(from), direction_(direction) {
+  Ray(const Point& from, const std::array<int, 3>& direction, bool leads_below)
+      : from_(from), direction_(direction), leads_below_(leads_below) {
     for (std::size_t i = 0; i < 3; ++i) to_.exact[i] = direction[i];  // the point at infinity
   }
 
@@ -36,7 +39,7 @@ class Ray {
     if (misses(piece.box)) return 0;
     const int from = side_of(piece.plane, from_), towards = sign_of_dot(piece.plane, direction_);
     if (from == 0 && towards == 0) return std::nullopt;
-    if (from * towards >= 0) return 0;
+    if (from * towards > 0 || (from == 0 && !leads_below_)) return 0;
     bool has_left = false, has_right = false, meets_line = false;
     for (std::size_t i = 0; i < piece.corners.size(); ++i) {
       const Point &p = scene.vertices[piece.corners[i]],
@@ -76,13 +79,12 @@ class Ray {
 
   const Point& from_;
   const std::array<int, 3>& direction_;
+  const bool leads_below_;
   Point to_;
 };
 
-// Above the point, which lies on no piece but those in a plane that the direction leaves.
-std::optional<int> winding_number(const ExactScene& scene, const ExactSurface& surface, const Point& x,
-                                  const std::array<int, 3>& direction) {
-  const Ray ray(x, direction);
+// On the ray, near its start.
+std::optional<int> winding_number(const ExactScene& scene, const ExactSurface& surface, const Ray& ray) {
   int sum = 0;
   for (const std::uint32_t piece : surface.pieces) {
     const std::optional<int> crossing = ray.crossing(scene, scene.pieces[piece]);
@@ -137,23 +139,37 @@ class Interior {
     }
   }
 
-  [[nodiscard]] bool is_inside(const ExactSurface& surface) const {
-    if (surface.box.is_apart_from(box_)) return false;
+  // Just above all of it, if that is known.
+  [[nodiscard]] std::optional<int> winding(const ExactSurface& surface) const {
+    if (surface.rim && !lies_before(*surface.rim)) return std::nullopt;
+    if (surface.box.is_apart_from(box_)) return 0;
     const bool is_off =
         std::ranges::all_of(surface.pieces, [&](std::uint32_t piece) { return keeps_off(scene_.pieces[piece]); });
-    if (!is_off) return false;
+    if (!is_off) return std::nullopt;
     for (std::array<int, 3> direction : kDirections) {
-      const int upwards = sign_of_dot(plane_, direction);
-      if (upwards == 0) continue;
-      for (int& component : direction) component *= upwards;
-      if (const std::optional<int> w = winding_number(scene_, surface, centre_, direction)) return *w != 0;
+      for (const int way : {1, -1}) {
+        for (int& component : direction) component *= way;
+        const int upwards = sign_of_dot(plane_, direction);
+        if (upwards == 0 || (surface.rim && sign_of_dot(*surface.rim, direction) <= 0)) continue;
+        const Ray ray(centre_, direction, upwards < 0);
+        if (const std::optional<int> w = winding_number(scene_, surface, ray)) return w;
+      }
     }
-    return false;
+    return std::nullopt;
   }
 
  private:
+  // And what is just above it.
+  [[nodiscard]] bool lies_before(const Plane& plane) const {
+    const auto [some_before, some_behind] = sides_of(plane, part_.corners);
+    if (some_before || some_behind) return !some_behind;
+    Integer cosine;
+    for (std::size_t i = 0; i < 3; ++i) cosine += plane.exact[i] * plane_.exact[i];
+    return sgn(cosine) > 0;
+  }
   // See the header.
   [[nodiscard]] bool keeps_off(const ExactPiece& piece) const {
+    if (piece.box.is_apart_from(box_)) return true;
     const auto point_of = [&](std::uint32_t corner) -> const Point& { return scene_.vertices[corner]; };
     const auto [is_in_front, is_behind] = sides_of(plane_, piece.corners, point_of);
     const auto [part_in_front, part_behind] = sides_of(piece.plane, part_.corners);
@@ -178,14 +194,34 @@ class Interior {
 
 Enclosures::Enclosures(const ExactScene& scene)
     : scene_(scene),
-      surfaces_(exact_surfaces(ClosedSurfaces(scene.scene, ClosedSurfaces::Edges::kCutAtJunctions), scene.pieces)) {}
+      surfaces_(exact_surfaces(ClosedSurfaces(scene.scene, ClosedSurfaces::Edges::kCutAtJunctions), scene.pieces,
+                               scene.units)) {}
 
-bool Enclosures::stand_around(const Part& part) const {
+Windings Enclosures::above(const Part& part) const {
+  Windings windings(surfaces_.size());
   const bool is_planar = std::ranges::all_of(
       faces_of(scene_.scene, part), [&](FaceId face) { return scene_.scene.face(face).shape == FaceShape::kPlanar; });
-  if (!is_planar || surfaces_.empty()) return false;
+  if (!is_planar || surfaces_.empty()) return windings;
   const Interior interior(scene_, part);
-  return std::ranges::any_of(surfaces_, [&](const ExactSurface& surface) { return interior.is_inside(surface); });
+  std::ranges::transform(surfaces_, windings.begin(), [&](const ExactSurface& surface) {
+    kernel::poll();
+    return interior.winding(surface);
+  });
+  return windings;
+}
+
+bool Enclosures::are_around(const Windings& windings) const {
+  for (std::size_t i = 0; i < windings.size(); ++i) {
+    if (!surfaces_[i].rim && windings[i] && *windings[i] != 0) return true;
+  }
+  return false;
+}
+
+bool are_separated(const Windings& one, const Windings& other) {
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    if (one[i] && other[i] && *one[i] != *other[i]) return true;
+  }
+  return false;
 }
 
 }  // namespace exactff::view_factors

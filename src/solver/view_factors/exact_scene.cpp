@@ -59,7 +59,7 @@ ExactScene::ExactScene(const Scene& scene_in)
     (panels.is_joined(id) ? joined : pieces).push_back(std::move(made));
   }
   const ClosedSurfaces& closed = closed_surfaces(scene);
-  surfaces = exact_surfaces(closed, pieces);
+  surfaces = exact_surfaces(closed, pieces, units);
   if (closed.empty()) return;
   for (std::uint32_t i = 0; i < pieces.size(); ++i) {
     const std::uint32_t surface = closed.of_piece(i);
@@ -81,10 +81,16 @@ ExactPiece ExactScene::exact_piece(const Piece& piece, std::span<const std::uint
   return made;
 }
 
-std::vector<ExactSurface> exact_surfaces(const ClosedSurfaces& closed, std::span<const ExactPiece> pieces) {
+std::vector<ExactSurface> exact_surfaces(const ClosedSurfaces& closed, std::span<const ExactPiece> pieces,
+                                         const Units& units) {
   std::vector<ExactSurface> surfaces;
   if (closed.empty()) return surfaces;
-  for (const ClosedSurface& surface : closed.surfaces()) surfaces.push_back({{}, surface.turned_inside_out, {}});
+  for (const ClosedSurface& surface : closed.surfaces()) {
+    surfaces.push_back({{}, surface.turned_inside_out, {}, {}});
+    if (!surface.rim) continue;
+    const auto& [a, b, c] = surface.rim->plane;
+    surfaces.back().rim = make_plane(join(point_of(a, units), point_of(b, units), point_of(c, units)), units);
+  }
   for (std::uint32_t i = 0; i < pieces.size(); ++i) {
     const std::uint32_t surface = closed.of_piece(i);
     if (surface == ClosedSurfaces::kNone) continue;

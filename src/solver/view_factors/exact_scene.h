@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,7 @@ struct ExactPiece {
 struct ExactSurface {
   Box box;
   bool turned_inside_out = false;
+  std::optional<Plane> rim;           // of one with holes: the surface lies on its positive side
   std::vector<std::uint32_t> pieces;  // ascending
 };
 
@@ -64,7 +66,7 @@ struct ExactScene {
 };
 
 // By their indices.
-[[nodiscard]] std::vector<ExactSurface> exact_surfaces(const ClosedSurfaces& closed,
-                                                       std::span<const ExactPiece> pieces);
+[[nodiscard]] std::vector<ExactSurface> exact_surfaces(const ClosedSurfaces& closed, std::span<const ExactPiece> pieces,
+                                                       const Units& units);
 
 }  // namespace exactff::view_factors

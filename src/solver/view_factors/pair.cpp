@@ -118,7 +118,18 @@ Pair::Pair(const Scene& scene, Sight sight, std::vector<FaceId> receiver_faces,
       receiver_faces_(std::move(receiver_faces)),
       whole_(std::move(whole)),
       bound_(sight_),
-      view_(sight_, memory, id) {}
+      view_(sight_, memory, id) {
+  if (!sight_.is_of_open()) return;
+  for (const int side : {1, -1}) {
+    for (const Occluder& occluder : sight_.occluders) {
+      std::vector<Vec3> corners;
+      for (const Edge& edge : occluder.ring) corners.push_back(sight_.points[edge.from].at);
+      Plane plane = *occluder.plane;
+      for (double& coefficient : plane.rounded) coefficient *= side;
+      of_occluders_.emplace_back(corners, plane, sight_.receiver);
+    }
+  }
+}
 
 CellView::Outcome Pair::view(const Cell& cell, std::size_t depth, Candidates& candidates) {
   const std::uint64_t before = view_.work();
@@ -194,7 +205,7 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enou
     case CellView::Outcome::kCut:
       break;
   }
-  if (0.5 * largest_integral(cell) <= enough) {
+  if (range_on(cell, candidates).half() * size_of(cell) <= enough) {
     return add_dark(std::move(cell), std::move(candidates), view_.way(depth), view_.best_cut(), shares);
   }
   if (effort() >= budget_.effort) {
@@ -211,22 +222,36 @@ double Pair::size_of(const Cell& cell) const {
   return certifies() ? magnitude(enclosed_area(cell, sight_.receiver)) : area(cell);
 }
 
-double Pair::largest_integral(const Cell& cell) const { return bound_.on(cell) * size_of(cell); }
+// What is open is all that the occluders do not cover, even if no two of their shadows overlap. Where the cell's area
+// must be rounded up, the least is not used.
+Pair::Range Pair::range_on(const Cell& cell, const Candidates& candidates) const {
+  Range range{.high = bound_.on(cell)};
+  if (!sight_.is_of_open() || certifies()) return range;
+  double covered = 0.0;
+  for (const auto& [occluder, facing] : candidates) {
+    if (facing != -1) covered += of_occluders_[occluder].on(cell);
+    if (facing != 1) covered += of_occluders_[sight_.occluders.size() + occluder].on(cell);
+    if (covered >= 1.0) return range;
+  }
+  range.low = std::max(0.0, 1.0 - covered * kSlack);
+  return range;
+}
 
 void Pair::add_dark(Cell cell, Candidates candidates, PairMemory::Way way, std::shared_ptr<const Plane> cut,
                     std::vector<Share>& shares) const {
-  const double bound = 0.5 * bound_.on(cell), half = bound * size_of(cell);
+  const Range range = range_on(cell, candidates);
+  const double size = size_of(cell);
   shares.push_back({.cell = std::move(cell),
                     .candidates = std::move(candidates),
                     .formula = nullptr,
                     .way = std::move(way),
                     .cut = std::move(cut),
-                    .integral = half,
-                    .error = half * kSlack,
+                    .integral = range.middle() * size,
+                    .error = range.half() * size * kSlack,
                     .stage = limits_.stage,
                     .is_event = true,
                     .is_dark = true,
-                    .bound = bound * kSlack,
+                    .bound = range.half() * kSlack,
                     .near = nullptr});
 }
 
@@ -363,10 +388,11 @@ Pair::Integral Pair::integrate_event(const Formula& formula, const Cell& cell, c
     return found;
   }
   const auto [found, rounding] = value_at(formula, centre);
-  const double most = bound_.on(cell), value = std::clamp(found, 0.0, most);
+  const Range range = range_on(cell, candidates);
+  const double value = std::clamp(found, range.low, range.high);
   const double radius = radius_about(cell, centre.at);
-  const double bound =
-      std::min(slope_bound(candidates, centre.at, radius) * radius + rounding, std::max(value, most - value));
+  const double bound = std::min(slope_bound(candidates, centre.at, radius) * radius + rounding,
+                                std::max(value - range.low, range.high - value));
   return {.integral = value * size, .error = bound * size, .bound = bound};
 }
 
@@ -374,7 +400,7 @@ Pair::Integral Pair::integrate_event(const Formula& formula, const Cell& cell, c
 Pair::Integral Pair::enclose_event(const Formula& formula, const Cell& cell, const Point& centre,
                                    const Candidates& candidates, const std::vector<CrossingTriple>& triples) const {
   const double size = size_of(cell);
-  const double half = 0.5 * largest_integral(cell);
+  const double half = 0.5 * bound_.on(cell) * size;
   const Integral unknown{.integral = half, .error = half * kSlack};
   const double bound = triples.empty() ? HUGE_VAL : kEventMargin * event_bound(sight_.points, cell, centre.at, triples);
   if (bound < 1.0) {

@@ -137,7 +137,13 @@ class Pair {
                                        const Candidates& candidates, const std::vector<CrossingTriple>& triples) const;
   [[nodiscard]] bool certifies() const { return limits_.certified > 0.0; }
   [[nodiscard]] double size_of(const Cell& cell) const;
-  [[nodiscard]] double largest_integral(const Cell& cell) const;
+  struct Range {
+    double low = 0.0, high = 1.0;
+    [[nodiscard]] double middle() const { return 0.5 * (low + high); }
+    [[nodiscard]] double half() const { return 0.5 * (high - low); }
+  };
+  // Of F on the cell, whatever is hidden.
+  [[nodiscard]] Range range_on(const Cell& cell, const Candidates& candidates) const;
   struct Rule {
     double integral = 0.0;
     double rounding = 0.0;  // of the values and of the cell's area
@@ -155,6 +161,7 @@ class Pair {
   std::shared_ptr<const ExactSource> whole_;
   Limits limits_;
   FactorBound bound_;
+  std::vector<FactorBound> of_occluders_;  // from their positive sides, then from the others; of what is open
   CellView view_;
   std::size_t cells_made_ = 0, extra_cost_ = 0;
   Budget budget_;  // of all calls so far and this one

@@ -11,11 +11,12 @@
 #include "scene/scene_copy.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
-#include "view_factors/enclosures.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/pair_memory.h"
+#include "view_factors/patch_bounds.h"
 #include "view_factors/prepared_patch.h"
 #include "view_factors/seen_parts.h"
+#include "view_factors/strata.h"
 #include "view_factors/view_factor.h"
 
 namespace exactff::view_factors {
@@ -31,10 +32,10 @@ using Key = std::pair<PatchId, std::optional<FaceId>>;
 Key key_of(const Selection& selection) { return {selection.patch, selection.face}; }
 
 // Whether a part of the one may see a part of the other.
-bool may_see(const SeenParts& seen, const PreparedPatch& from, const PreparedPatch& to) {
+bool sees_some_of(const SeenParts& seen, const PreparedPatch& from, const PreparedPatch& to) {
   for (std::size_t i = 0; i < from.parts.size(); ++i) {
-    for (const Part& part : to.parts) {
-      if (from.seen.sees(seen, from.parts, i, part)) return true;
+    for (std::size_t j = 0; j < to.parts.size(); ++j) {
+      if (!are_separated(seen, from, i, to, j) && from.seen.sees(seen, from.parts, i, to.parts[j])) return true;
     }
   }
   return false;
@@ -46,17 +47,17 @@ struct Pairs::Patches {
   // Selections of the given scene, in a copy of it.
   Patches(const Scene& given, std::span<const Selection> from, std::span<const Selection> to, Columns what)
       : moved(near_origin(given)), scene(moved ? *moved : given), seen(scene) {
-    rows = prepare(given, from, false);
-    columns = prepare(given, to, what == Columns::kSurroundings);
+    rows = prepare(given, from, Columns::kPatches);
+    columns = prepare(given, to, what);
   }
 
-  std::vector<const PreparedPatch*> prepare(const Scene& given, std::span<const Selection> patches, bool surround) {
+  std::vector<const PreparedPatch*> prepare(const Scene& given, std::span<const Selection> patches, Columns what) {
     std::vector<const PreparedPatch*> result;
     for (const Selection& patch : patches) {
       (void)given.faces_of(patch);  // throws if it is of another scene
       std::unique_ptr<const PreparedPatch>& known = prepared[key_of(patch)];
       if (known == nullptr) {
-        known = std::make_unique<const PreparedPatch>(scene, Selection{patch.patch, patch.face}, surround);
+        known = std::make_unique<const PreparedPatch>(scene, Selection{patch.patch, patch.face}, what);
       }
       result.push_back(known.get());
     }
@@ -69,8 +70,6 @@ struct Pairs::Patches {
   std::map<Key, std::unique_ptr<const PreparedPatch>> prepared;
   std::vector<const PreparedPatch*> rows, columns;
   mutable PairMemories memories;
-  mutable std::once_flag enclosures_found;
-  mutable std::optional<Enclosures> enclosures;
 };
 
 Pairs::Pairs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
@@ -91,11 +90,36 @@ Pairs::Pairs(const Scene& scene, std::span<const Selection> from, std::span<cons
 Pairs::~Pairs() = default;
 
 double Pairs::area_from(std::size_t row) const { return patches_->rows[row]->area; }
+double Pairs::area_to(std::size_t column) const { return patches_->columns[column]->area; }
 
 bool Pairs::is_enclosed(std::size_t row) const {
-  std::call_once(patches_->enclosures_found, [&] { patches_->enclosures.emplace(patches_->scene); });
-  return std::ranges::all_of(patches_->rows[row]->parts,
-                             [&](const Part& part) { return patches_->enclosures->stand_around(part); });
+  const PreparedPatch& patch = *patches_->rows[row];
+  return std::ranges::all_of(patch.seen.windings(patches_->seen, patch.parts), [&](const Windings& windings) {
+    return patches_->seen.enclosures().are_around(windings);
+  });
+}
+
+bool Pairs::is_within(std::size_t row, std::size_t surface) const {
+  const PreparedPatch& patch = *patches_->rows[row];
+  return std::ranges::all_of(patch.seen.windings(patches_->seen, patch.parts),
+                             [&](const Windings& windings) { return windings[surface] && *windings[surface] != 0; });
+}
+
+bool Pairs::may_see(std::size_t row, std::size_t column) const {
+  return sees_some_of(patches_->seen, *patches_->rows[row], *patches_->columns[column]);
+}
+
+double Pairs::unhidden(std::size_t row, std::size_t column) const {
+  const PreparedPatch &from = *patches_->rows[row], &to = *patches_->columns[column];
+  PatchBounds bounds(patches_->scene, patches_->seen, from, to);
+  const Strata strata = strata_of(from.parts, kFewestStrata);
+  double sum = 0.0;
+  for (const Stratum& stratum : strata.strata) {
+    const Tile& tile = strata.tiles[stratum.begin];
+    const Vec3 middle = sides_of(from.parts[tile.part], tile).at(middle_of(tile));
+    sum += stratum.area / strata.area * bounds.range_at(tile.part, middle);
+  }
+  return std::min(1.0, sum);
 }
 
 // Of two patches that may be exchanged, the one that comes first in the scene is seen from, whichever is asked for.
@@ -106,15 +130,18 @@ Pairs::Ends Pairs::ends_of(std::size_t entry) const {
   return turned ? Ends{column, row, true} : Ends{row, column, false};
 }
 
-void Pairs::compute(std::size_t pair, const std::function<void(std::size_t, const ViewFactor&)>& take) const {
+void Pairs::compute(std::size_t pair, const std::function<void(std::size_t, const ViewFactor&)>& take,
+                    double finer) const {
   const kernel::StandardArithmetic of_thread;
+  ViewFactorOptions options = options_;
+  options.accuracy /= finer;
   const auto [from, to, turned] = ends_of(entries_[pair].front());
   // First what the row may see, which all of its entries ask for.
   const PreparedPatch &row = turned ? *to : *from, &column = turned ? *from : *to;
   std::unique_ptr<PairMemory> memory = patches_->memories.take();
   ViewFactor computed{.area_from = from->area, .area_to = to->area};
-  if (may_see(patches_->seen, row, column)) {
-    computed = factor_between(patches_->scene, patches_->seen, *from, *to, options_, *memory);
+  if (sees_some_of(patches_->seen, row, column)) {
+    computed = factor_between(patches_->scene, patches_->seen, *from, *to, options, *memory);
   }
   patches_->memories.give_back(std::move(memory));
   for (const std::size_t entry : entries_[pair]) {

@@ -10,18 +10,11 @@
 #include <vector>
 
 #include "exactff/view_factors.h"
+#include "view_factors/columns.h"
 
 namespace exactff::view_factors {
 
 struct PreparedPatch;
-
-// What the columns are.
-enum class Columns {
-  kPatches,
-  // Each is a patch whose fronts lie all around the scene and look inward, at infinity as it were, and that hides
-  // nothing. The factor to it is what the occluders leave of all directions.
-  kSurroundings,
-};
 
 class Pairs {
  public:
@@ -38,10 +31,19 @@ class Pairs {
   // That gives the entry.
   [[nodiscard]] std::size_t pair_of(std::size_t entry) const { return pair_of_[entry]; }
   [[nodiscard]] double area_from(std::size_t row) const;
+  [[nodiscard]] double area_to(std::size_t column) const;
   // Whether closed surfaces stand around all that the row's patch sees (enclosures.h), if that can be proved.
   [[nodiscard]] bool is_enclosed(std::size_t row) const;
-  // In the order of entries_of. From any thread.
-  void compute(std::size_t pair, const std::function<void(std::size_t entry, const ViewFactor& factor)>& take) const;
+  // Whether all that the row's patch sees lies within this one of the scene's closed surfaces, by edges that are cut at
+  // T-junctions, or beyond its holes, if that can be proved.
+  [[nodiscard]] bool is_within(std::size_t row, std::size_t surface) const;
+  // Whether a point of the row's patch may see some of the column's: false proves that the entry is 0.
+  [[nodiscard]] bool may_see(std::size_t row, std::size_t column) const;
+  // About what the row's patch would see of the column's if nothing were hidden, or more; at most 1.
+  [[nodiscard]] double unhidden(std::size_t row, std::size_t column) const;
+  // In the order of entries_of. From any thread. `finer`: the accuracy is divided by this.
+  void compute(std::size_t pair, const std::function<void(std::size_t entry, const ViewFactor& factor)>& take,
+               double finer = 1.0) const;
 
  private:
   struct Patches;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "kernel/poll.h"
 #include "view_factors/near_planes.h"
@@ -13,6 +14,15 @@ namespace {
 constexpr std::size_t kMostSources = 256;  // of more parts, F is only known to be at most 1
 constexpr double kSum = 1.0 + 0x1p-40;     // more than the roundings of a sum
 
+// Otherwise no point of either sees the other.
+bool reach_before_each_other(const Part& one, const Part& other, const Units& units) {
+  const auto reaches_before = [&](const Part& part, const Part& of_plane) {
+    const Plane plane = plane_of(of_plane, units);
+    return std::ranges::any_of(part.corners, [&](const Point& corner) { return side_of(plane, corner) > 0; });
+  };
+  return reaches_before(one, other) && reaches_before(other, one);
+}
+
 }  // namespace
 
 PatchBounds::PatchBounds(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from,
@@ -20,7 +30,7 @@ PatchBounds::PatchBounds(const ExactScene& scene, const SeenParts& seen, const P
     : scene_(scene), seen_(seen), from_(from), to_(to), parts_(from.parts.size()) {}
 
 Span PatchBounds::on(std::size_t part, const Part& fragment, const Tile& tile, bool with_change) {
-  const OfPart& bounds = of(part);
+  const OfPart& bounds = with_change ? with_slopes(part) : of(part);
   Span span{.range = range_on(bounds, corners_of(fragment, tile))};
   if (!with_change) return span;
   const Reach reach = reach_of(fragment, tile);
@@ -31,7 +41,7 @@ Span PatchBounds::on(std::size_t part, const Part& fragment, const Tile& tile, b
 }
 
 Span PatchBounds::about(std::size_t part, const Vec3& point) {
-  const OfPart& bounds = of(part);
+  const OfPart& bounds = with_slopes(part);
   return {range_on(bounds, {&point, 1}),
           sum_of(bounds, [&](const SlopeBound& slope) { return slope.about(point, 0.0); })};
 }
@@ -43,12 +53,20 @@ PatchBounds::OfPart& PatchBounds::of(std::size_t part) {
   const Part& receiver = from_.parts[part];
   const Plane plane = plane_of(receiver, scene_.units);
   if (to_.parts.size() <= kMostSources) {
+    of->knows_unhidden = true;
     for (const Part& source : to_.parts) {
+      if (!reach_before_each_other(receiver, source, scene_.units)) continue;
       of->unhidden.emplace_back(positions_of(source.corners), plane_of(source, scene_.units), plane);
     }
   }
-  if (!to_.surrounds) add_slopes(part, *of);
   return *of;
+}
+
+PatchBounds::OfPart& PatchBounds::with_slopes(std::size_t part) {
+  OfPart& of = this->of(part);
+  if (std::exchange(of.slopes_asked, true) || to_.surrounds()) return of;
+  add_slopes(part, of);
+  return of;
 }
 
 void PatchBounds::add_slopes(std::size_t part, OfPart& of) {
@@ -66,7 +84,7 @@ void PatchBounds::add_slopes(std::size_t part, OfPart& of) {
 }
 
 double PatchBounds::range_on(const OfPart& of, std::span<const Vec3> corners) const {
-  if (to_.parts.empty() || of.unhidden.empty()) return 1.0;
+  if (!of.knows_unhidden) return 1.0;
   double sum = 0.0;
   for (const UnhiddenBound& bound : of.unhidden) {
     sum += bound.on(corners);

@@ -21,17 +21,20 @@ class PatchBounds {
   // On a tile of a part of `from`, or of a fragment of this part. Without the change if it is not asked for, or useless
   // beside the range.
   [[nodiscard]] Span on(std::size_t part, const Part& fragment, const Tile& tile, bool with_change);
-  // The range at a single point, and the largest change for each unit of the distance from there.
+  [[nodiscard]] double range_at(std::size_t part, const Vec3& point) { return range_on(of(part), {&point, 1}); }
+  // The same, and the largest change for each unit of the distance from there.
   [[nodiscard]] Span about(std::size_t part, const Vec3& point);
 
  private:
   struct OfPart {
-    std::vector<UnhiddenBound> unhidden;  // of each part of `to`
+    bool knows_unhidden = false;
+    std::vector<UnhiddenBound> unhidden;  // of each part of `to` that lies before the part, as that does before it
     std::vector<SlopeBound> slopes;       // of those that are seen
-    bool has_slopes = false;
+    bool slopes_asked = false, has_slopes = false;
   };
 
   [[nodiscard]] OfPart& of(std::size_t part);
+  [[nodiscard]] OfPart& with_slopes(std::size_t part);
   [[nodiscard]] double range_on(const OfPart& of, std::span<const Vec3> corners) const;
   void add_slopes(std::size_t part, OfPart& of);
   template <class Slope>

@@ -1,9 +1,11 @@
 // A patch of a matrix: what all of its factors share, prepared once.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "kernel/disc.h"
+#include "view_factors/columns.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/seen_parts.h"
 #include "view_factors/sight.h"
@@ -12,7 +14,7 @@ namespace exactff::view_factors {
 
 struct PreparedPatch {
   // Throws InputError for a patch without area.
-  PreparedPatch(const ExactScene& scene, const Selection& patch, bool surrounds_scene);
+  PreparedPatch(const ExactScene& scene, const Selection& patch, Columns what);
 
   Selection selection;
   std::vector<Part> parts;
@@ -20,8 +22,18 @@ struct PreparedPatch {
   double unit_area = 0.0;      // in squares of the unit of Point::at
   kernel::Disc enclosed_area;  // the same
   bool planar = true;          // all of its faces
-  bool surrounds;              // whatever meets nothing else meets one of its fronts (Columns::kSurroundings)
+  Columns what;                // of columns; else kPatches
   SeenParts::OfPatch seen;
+
+  [[nodiscard]] bool surrounds() const { return what == Columns::kSurroundings; }
 };
+
+// The area that errors of an integral over the row's patch are divided by: of both directions, if both may be asked
+// for.
+[[nodiscard]] double counted_area(const PreparedPatch& from, const PreparedPatch& to);
+
+// Whether a closed surface is proved to hide one part of either patch from the other, if the column asks for that.
+[[nodiscard]] bool are_separated(const SeenParts& seen, const PreparedPatch& row, std::size_t i,
+                                 const PreparedPatch& column, std::size_t j);
 
 }  // namespace exactff::view_factors

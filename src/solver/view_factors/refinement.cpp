@@ -32,7 +32,7 @@ Refinement::Refinement(const ExactScene& scene, const SeenParts& seen, const Pre
       to_(to),
       options_(options),
       pause_(pauses() ? kFirstPause : kNoPause),
-      smaller_area_(std::min(from.unit_area, to.unit_area)),
+      smaller_area_(counted_area(from, to)),
       least_error_(0.5 * options.accuracy * smaller_area_ / (4.0 * static_cast<double>(options.budget))),
       narrowest_(widened(0.5 * from.enclosed_area, 0.5 * magnitude(from.enclosed_area))) {
   look_at_pairs(scene, seen, memory);
@@ -43,7 +43,7 @@ void Refinement::look_at_pairs(const ExactScene& scene, const SeenParts& seen, P
   PairChoice choice(scene, memory, is_symmetric(from_, to_, options_));
   const std::vector<PairEnd> receivers = ends_of(scene.scene, from_);
   const auto occluders = [&](std::size_t r) { return std::span(from_.seen.lists(seen, from_.parts)[r].occluders); };
-  if (to_.surrounds) {
+  if (to_.surrounds()) {
     const auto whole = std::make_shared<const ExactSource>(scene.scene, to_.selection);
     for (std::size_t r = 0; r < receivers.size(); ++r) {
       if (!add_pair(choice.of_open(occluders(r), receivers[r].part, whole))) return;
@@ -53,8 +53,8 @@ void Refinement::look_at_pairs(const ExactScene& scene, const SeenParts& seen, P
   const std::vector<PairEnd> sources = ends_of(scene.scene, to_);
   for (std::size_t r = 0; r < receivers.size(); ++r) {
     for (std::size_t s = 0; s < sources.size(); ++s) {
-      const bool may_see =
-          from_.seen.sees(seen, from_.parts, r, to_.parts[s]) && to_.seen.sees(seen, to_.parts, s, from_.parts[r]);
+      const bool may_see = from_.seen.sees(seen, from_.parts, r, to_.parts[s]) &&
+                           to_.seen.sees(seen, to_.parts, s, from_.parts[r]) && !are_separated(seen, from_, r, to_, s);
       if (may_see && !add_pair(choice.choose(occluders(r), receivers[r], sources[s]))) return;
     }
   }

@@ -163,7 +163,7 @@ class SampledCells::Round {
 SampledCells::SampledCells(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to,
                            std::size_t most)
     : scene_(scene),
-      smaller_area_(std::min(from.unit_area, to.unit_area)),
+      smaller_area_(counted_area(from, to)),
       most_(most),
       effort_of_point_(kLeastEffort),
       narrowest_(kernel::widened(0.5 * from.enclosed_area, 0.5 * magnitude(from.enclosed_area))) {}

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "visibility/seen_pieces.h"
 
@@ -42,6 +43,20 @@ bool SeenParts::OfPatch::sees(const SeenParts& scene, std::span<const Part> part
   }
   const std::vector<std::uint32_t>& seen = lists(scene, parts)[i].seen;
   return std::ranges::any_of(pieces, [&](std::uint32_t piece) { return std::ranges::binary_search(seen, piece); });
+}
+
+const std::vector<Windings>& SeenParts::OfPatch::windings(const SeenParts& scene, std::span<const Part> parts) const {
+  std::call_once(state_->windings_once, [&] {
+    std::vector<Windings> windings;
+    for (const Part& part : parts) windings.push_back(scene.enclosures().above(part));
+    state_->windings = std::move(windings);
+  });
+  return state_->windings;
+}
+
+const Enclosures& SeenParts::enclosures() const {
+  std::call_once(enclosures_once_, [&] { enclosures_.emplace(scene_); });
+  return *enclosures_;
 }
 
 // Corners of a part may be rounded; those of its face, or of its joined panel, are not.

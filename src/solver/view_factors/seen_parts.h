@@ -1,13 +1,16 @@
-// The pieces that each part of a patch may see (visibility/seen_pieces.h), found when they are first asked for.
+// The pieces that each part of a patch may see (visibility/seen_pieces.h), and the closed surfaces around it, found
+// when they are first asked for.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "view_factors/enclosures.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/sight.h"
 #include "visibility/walls.h"
@@ -38,23 +41,28 @@ class SeenParts {
     // questions are answered without the lists.
     [[nodiscard]] bool sees(const SeenParts& scene, std::span<const Part> parts, std::size_t i,
                             const Part& other) const;
+    [[nodiscard]] const std::vector<Windings>& windings(const SeenParts& scene, std::span<const Part> parts) const;
 
    private:
     struct State {
-      std::once_flag once;
+      std::once_flag once, windings_once;
       std::atomic<std::size_t> questions{0};
       Lists lists;
+      std::vector<Windings> windings;
     };
     std::unique_ptr<State> state_ = std::make_unique<State>();
   };
 
   [[nodiscard]] SeenPieces seen_from(const Part& part) const;
+  [[nodiscard]] const Enclosures& enclosures() const;
 
  private:
   [[nodiscard]] exactff::Box region_of(const Part& part) const;
 
   const ExactScene& scene_;
   std::vector<visibility::Wall> walls_;
+  mutable std::once_flag enclosures_once_;
+  mutable std::optional<Enclosures> enclosures_;
 };
 
 }  // namespace exactff::view_factors

@@ -51,9 +51,9 @@ void take_interval(const Disc& integral, const PreparedPatch& from, ViewFactor& 
 
 double width_of(const ViewFactor& f) { return f.upper - f.lower; }
 
-// The larger one of both directions.
+// The larger one of both directions, if both count.
 double counted_width(const ViewFactor& f, const PreparedPatch& from, const PreparedPatch& to) {
-  return std::max(width_of(f), width_of(f) * from.unit_area / to.unit_area);
+  return width_of(f) * from.unit_area / counted_area(from, to);
 }
 
 bool is_within(double accuracy, const ViewFactor& f, const PreparedPatch& from, const PreparedPatch& to) {
@@ -80,7 +80,7 @@ class PointSearch {
         to_(to),
         turned_(is_symmetric(from, to, options) && has_better_points(to, from)),
         mean_(scene, seen, turned_ ? to : from, turned_ ? from : to, kPointsOfBudget * options.budget,
-              std::max(1.0, turned_ ? to.unit_area / from.unit_area : from.unit_area / to.unit_area)) {}
+              (turned_ ? to : from).unit_area / counted_area(from, to)) {}
 
   [[nodiscard]] const SampledMean& mean() const { return mean_; }
   // Until the factor is accurate, or the next look would take more than this effort of all looks.
@@ -228,7 +228,7 @@ class Search {
 }  // namespace
 
 bool is_symmetric(const PreparedPatch& i, const PreparedPatch& j, const ViewFactorOptions& options) {
-  return i.planar && j.planar && !j.surrounds && !options.both_directions;
+  return i.planar && j.planar && !j.surrounds() && !options.both_directions;
 }
 
 ViewFactor factor_between(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from,

@@ -152,6 +152,20 @@ ProjectedArea union_area(const Scene& scene, const SourcePlane& plane) {
   return {doubled / 2, axis};
 }
 
+bool is_covered(const Scene& scene, std::uint32_t piece, std::span<const std::uint32_t> by) {
+  if (by.empty()) return false;
+  const int axis = longest_axis(front_normal(scene, scene.pieces()[piece]));
+  std::vector<Polygon2> polygons;
+  const auto add = [&](std::uint32_t id) {
+    const Piece& one = scene.pieces()[id];
+    polygons.push_back(projected(scene, scene.corners(one), axis, sign(front_normal(scene, one)[axis]) < 0));
+  };
+  add(piece);
+  std::ranges::for_each(by, add);
+  normalise(polygons);
+  return difference(std::span(polygons).first(1), std::span(polygons).subspan(1)).empty();
+}
+
 namespace {
 
 bool overlap(const Scene& scene, const SourcePlane& plane) {

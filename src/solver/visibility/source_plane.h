@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "exactff/scene.h"
@@ -37,5 +38,9 @@ struct ProjectedArea {
   int axis = 0;
 };
 ProjectedArea union_area(const Scene& scene, const SourcePlane& plane);
+
+// Whether the union of other pieces covers all of the piece, exactly. Requires that all lie in one plane; they may face
+// either way.
+[[nodiscard]] bool is_covered(const Scene& scene, std::uint32_t piece, std::span<const std::uint32_t> by);
 
 }  // namespace exactff::visibility

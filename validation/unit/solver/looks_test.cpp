@@ -215,7 +215,8 @@ TEST(SampledMean, IsAsWideAsWhatIsProvedSays) {
   const Scene scene = generate::build(plain);
   const ExactScene exact(scene);
   const SeenParts seen(exact);
-  const PreparedPatch below(exact, scene.select("below"), false), above(exact, scene.select("above"), false);
+  const PreparedPatch below(exact, scene.select("below"), Columns::kPatches);
+  const PreparedPatch above(exact, scene.select("above"), Columns::kPatches);
   SampledMean mean(exact, seen, below, above, 20000, 1.0);
   constexpr double kTruth = 0.19982489569838746;
   double last = 1.0;

@@ -1,0 +1,17 @@
+// What the columns of a matrix are. Of columns that are not patches of the scene, nobody asks what is seen from there.
+#pragma once
+
+namespace exactff::view_factors {
+
+enum class Columns {
+  kPatches,
+  // Each is a patch of turned copies of faces. Where closed surfaces hide these, that is proved first (enclosures.h).
+  kBacks,
+  // Each is a patch through which something is seen that lies beyond.
+  kWindows,
+  // Each is a patch whose fronts lie all around the scene and look inward, at infinity as it were, and that hides
+  // nothing. The factor to it is what the occluders leave of all directions.
+  kSurroundings,
+};
+
+}  // namespace exactff::view_factors
