@@ -191,6 +191,73 @@ TEST(Enclosed, SeesNothingOpenInEveryFamily) {
   EXPECT_GE(counts.open, 20U);
 }
 
+// --- Backs that closed surfaces hide ---
+
+// Some faces of a thing are taken away, and so are walls: what is left has holes in one plane, or in several.
+PlainScene room_with_holes(Random& random) {
+  PlainScene plain = random.below(2) == 0 ? random_building(random).scene : random_hull_room(random);
+  if (random.below(2) == 0) plain.patches.erase(plain.patches.begin() + random.integer(0, 3));
+  for (generate::PlainPatch& patch : plain.patches) {
+    if (patch.name != "things" || random.below(3) == 0) continue;
+    patch.faces.erase(patch.faces.begin() + static_cast<std::ptrdiff_t>(random.below(patch.faces.size())));
+  }
+  return plain;
+}
+
+struct BackCounts {
+  std::size_t proved = 0, seen = 0;
+};
+
+bool has_planar_faces(const Scene& scene, const Selection& patch) {
+  return std::ranges::all_of(scene.faces_of(patch),
+                             [&](FaceId face) { return scene.face(face).shape == FaceShape::kPlanar; });
+}
+
+// Where a row is proved to see no back, no point does. One on a bent face may see through a part of it.
+void judge_backs(const Scene& scene, const std::string& where, BackCounts& counts) {
+  constexpr double kRounding = 1e-9;
+  std::vector<Selection> rows;
+  for (const Selection& patch : all_of(scene)) {
+    if (!scene.faces_of(patch).empty() && has_planar_faces(scene, patch)) rows.push_back(patch);
+  }
+  std::vector<ViewFactor> backs;
+  try {
+    backs = matrix::compute(scene, rows, {}, {.factors = {.accuracy = 1.0, .budget = 20}, .backs = true}).back;
+  } catch (const InputError&) {
+    return;  // an area is no double
+  }
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const bool is_proved = backs[row].claim == Claim::kZero;
+    counts.proved += is_proved ? 1 : 0;
+    bool is_seen = false;
+    for (const Receiver& receiver : sample_receivers(scene, scene.faces_of(rows[row]), 6, row + 1)) {
+      const double back = view(scene, receiver).back.value;
+      is_seen = is_seen || back > kRounding;
+      EXPECT_TRUE(!is_proved || back <= kRounding) << where << ' ' << scene.name_of(rows[row]) << ' ' << back;
+    }
+    counts.seen += is_seen ? 1 : 0;
+  }
+}
+
+TEST(HiddenBacks, AreSeenFromNoPointOfRoomsWithHoles) {
+  BackCounts counts;
+  for (std::uint64_t s = 0; s < scaled_count(30); ++s) {
+    Random random(seed_of(s));
+    judge_backs(generate::build(room_with_holes(random)), std::to_string(s), counts);
+  }
+  EXPECT_GE(counts.proved, 50U);
+  EXPECT_GE(counts.seen, 10U);
+}
+
+TEST(HiddenBacks, AreSeenFromNoPointInEveryFamily) {
+  BackCounts counts;
+  for (const RandomFamily& family : random_families()) {
+    Random random(seed_of(1));
+    judge_backs(generate::build(family.make(random)), family.name, counts);
+  }
+  EXPECT_GE(counts.seen, 3U);
+}
+
 // --- How much is open ---
 
 struct Mean {

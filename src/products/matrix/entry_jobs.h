@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "exactff/matrix.h"
-#include "matrix/surroundings.h"
+#include "matrix/back_factors.h"
+#include "matrix/open_factors.h"
 #include "view_factors/pairs.h"
 
 namespace exactff::matrix {
@@ -34,17 +35,13 @@ class EntryJobs {
 
  private:
   [[nodiscard]] std::string name_of_column(std::size_t column) const;
-  [[nodiscard]] ViewFactor factor_to_backs(std::size_t row) const;
 
   const Scene& scene_;
   const std::vector<Selection> from_, to_;
   view_factors::Pairs pairs_;
   std::size_t width_;
-  std::optional<SceneWithBacks> with_backs_;
-  std::vector<Selection> parts_;  // of the backs
-  std::optional<view_factors::Pairs> to_backs_;
-  std::optional<SceneWithSky> with_sky_;
-  std::optional<view_factors::Pairs> to_sky_;
+  std::optional<BackFactors> to_backs_;
+  std::optional<OpenFactors> to_sky_;
 };
 
 }  // namespace exactff::matrix

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
+#include <map>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "kernel/plane_through.h"
 #include "kernel/poll.h"
 #include "matrix/coplanar.h"
+#include "scene/closed_surfaces.h"
 #include "scene/scene_copy.h"
 #include "text/refuse.h"
 #include "view_factors/pairs.h"
@@ -36,6 +39,8 @@ std::vector<FaceId> faces_with_area(const Scene& scene) {
   return faces;
 }
 
+constexpr std::size_t kMostOverlaps = 16;  // planes beyond share patches with others
+
 // The pieces of a scene and their backs that lie in one oriented plane, as indices of pieces.
 struct SharedPlane {
   std::vector<std::uint32_t> fronts, backs;
@@ -59,43 +64,154 @@ std::vector<SharedPlane> planes_of(const Scene& scene) {
   return result;
 }
 
-// Backs with a front on them are left out. Returns whether others overlap with a front in part.
+// Backs that fronts cover are left out. Returns whether others overlap with a front.
 bool sort_out(const Scene& scene, SharedPlane& plane) {
   const auto pieces = scene.pieces();
+  bool some_overlap = false;
   std::erase_if(plane.backs, [&](std::uint32_t back) {
-    return std::ranges::any_of(
-        plane.fronts, [&](std::uint32_t front) { return have_same_corners(scene, pieces[front], pieces[back]); });
-  });
-  return std::ranges::any_of(plane.backs, [&](std::uint32_t back) {
     kernel::poll();
-    return std::ranges::any_of(plane.fronts,
-                               [&](std::uint32_t front) { return overlap(scene, pieces[front], pieces[back]); });
+    std::vector<std::uint32_t> on_it;
+    for (const std::uint32_t front : plane.fronts) {
+      if (have_same_corners(scene, pieces[front], pieces[back])) return true;
+      if (overlap(scene, pieces[front], pieces[back])) on_it.push_back(front);
+    }
+    const bool is_hidden = visibility::is_covered(scene, back, on_it);
+    some_overlap = some_overlap || (!is_hidden && !on_it.empty());
+    return is_hidden;
   });
+  return some_overlap;
 }
 
 }  // namespace
 
-SceneWithBacks with_backs(const Scene& scene) {
+std::vector<Selection> of_any_scene(std::span<const Selection> patches) {
+  std::vector<Selection> result(patches.begin(), patches.end());
+  for (Selection& patch : result) patch.scene = kAnyScene;
+  return result;
+}
+
+SceneWithBacks with_backs(const Scene& scene, bool fronts_too) {
+  const ClosedSurfaces surfaces(scene, ClosedSurfaces::Edges::kCutAtJunctions);
+  const auto is_of_closed = [&](std::uint32_t piece) {
+    return !surfaces.empty() && surfaces.of_piece(piece) != ClosedSurfaces::kNone;
+  };
   SceneCopy copy(scene);
-  std::optional<Selection> backs, both, fronts;
-  const auto patch = [&](std::optional<Selection>& selection, const char* name) -> const Selection& {
-    if (!selection) selection = copy.add_patch(name);
-    return *selection;
+  std::array<std::optional<Selection>, 2> backs;  // of closed surfaces, and others
+  std::vector<SceneWithBacks::Overlap> overlaps;
+  std::size_t planes = 0;  // with an overlap
+  const auto turn = [&](const Selection& patch, std::uint32_t back) {
+    copy.add_face(patch, reversed_corners_of(scene, scene.pieces()[back]));
   };
   for (SharedPlane& plane : planes_of(scene)) {
-    const bool in_part = sort_out(scene, plane);
+    if (!sort_out(scene, plane)) {
+      if (plane.backs.empty()) continue;
+      // All of a plane go to one patch, where they count once if they overlap.
+      const bool are_of_closed = std::ranges::all_of(plane.backs, is_of_closed);
+      std::optional<Selection>& patch = backs[are_of_closed ? 0 : 1];
+      if (!patch) patch = copy.add_patch(are_of_closed ? "backs of closed surfaces" : "backs");
+      for (const std::uint32_t back : plane.backs) turn(*patch, back);
+      continue;
+    }
+    if (overlaps.size() < kMostOverlaps) {
+      const std::string number = std::to_string(overlaps.size());
+      overlaps.push_back({copy.add_patch("backs on fronts " + number), copy.add_patch("backs and fronts " + number),
+                          copy.add_patch("fronts " + number)});
+    }
+    const auto& [turned, both, fronts] = overlaps[planes++ % kMostOverlaps];
     for (const std::uint32_t back : plane.backs) {
-      const Selection& where = in_part ? patch(both, "backs and fronts") : patch(backs, "backs");
-      copy.add_face(where, reversed_corners_of(scene, scene.pieces()[back]));
+      turn(turned, back);
+      turn(both, back);
     }
     for (const std::uint32_t front : plane.fronts) {
-      if (!in_part) break;
-      copy.add_face(patch(both, "backs and fronts"), corners_of(scene, scene.pieces()[front]));
-      copy.add_face(patch(fronts, "fronts"), corners_of(scene, scene.pieces()[front]));
+      copy.add_face(both, corners_of(scene, scene.pieces()[front]));
+      copy.add_face(fronts, corners_of(scene, scene.pieces()[front]));
     }
   }
-  return {copy.take(), backs, both, fronts};
+  std::optional<Selection> all_fronts;
+  for (const Piece& piece : scene.pieces()) {
+    if (!fronts_too || piece.transparent) continue;
+    if (!all_fronts) all_fronts = copy.add_patch("all fronts");
+    copy.add_face(*all_fronts, corners_of(scene, piece));
+  }
+  SceneWithBacks result{copy.take(), {}, std::move(overlaps)};
+  for (const std::optional<Selection>& patch : backs) {
+    if (patch) result.whole.push_back(*patch);
+  }
+  if (all_fronts) result.whole.push_back(*all_fronts);
+  return result;
 }
+
+namespace {
+
+// Of points on a line: whether the third does not lie beyond the second, as seen from the first.
+bool runs_back(const Vec3& first, const Vec3& second, const Vec3& third) {
+  const auto along = [&](double Vec3::*c) { return (second.*c < first.*c) != (third.*c < second.*c); };
+  return (first.x != second.x && along(&Vec3::x)) || (first.y != second.y && along(&Vec3::y)) ||
+         (first.z != second.z && along(&Vec3::z));
+}
+
+// Round a hole in a plane: its corners, counter-clockwise as seen from the surface. Empty if the edges are those of
+// several holes, or of one that is not convex.
+std::vector<std::uint32_t> convex_hole(const Scene& scene, const ClosedSurface::Rim& rim) {
+  constexpr std::size_t kMostCorners = 256;
+  if (rim.edges.size() > kMostCorners) return {};
+  std::map<std::uint32_t, std::uint32_t> next(rim.edges.begin(), rim.edges.end());
+  if (next.size() != rim.edges.size()) return {};
+  std::vector<std::uint32_t> ring;
+  for (std::uint32_t at = rim.edges.front().first; ring.size() < next.size(); at = next[at]) {
+    if (!next.contains(at) || std::ranges::find(ring, at) != ring.end()) return {};
+    ring.push_back(at);
+  }
+  // No edge runs back along the one before, and the corners lie on one side of every edge: of the plane through it and
+  // a point off the hole's plane.
+  const auto at = [&](std::size_t i) -> const Vec3& { return scene.vertices()[ring[i % ring.size()]]; };
+  const auto apex = std::ranges::find_if(scene.vertices(), [&](const Vec3& v) {
+    return kernel::PlaneThrough(rim.plane[0], rim.plane[1], rim.plane[2]).side_of(v) > 0;
+  });
+  int turn = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const kernel::PlaneThrough side(at(i), at(i + 1), *apex);
+    if (side.side_of(at(i + 2)) == 0 && runs_back(at(i), at(i + 1), at(i + 2))) return {};
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const int sign = side.side_of(at(k));
+      if (sign * turn < 0) return {};
+      if (sign != 0) turn = sign;
+    }
+  }
+  if (turn > 0) std::ranges::reverse(ring);
+  return ring;
+}
+
+// Every piece that hides anything reaches before the plane, and none behind it.
+bool lies_before(const Scene& scene, const ClosedSurface::Rim& rim) {
+  const kernel::PlaneThrough plane(rim.plane[0], rim.plane[1], rim.plane[2]);
+  return std::ranges::all_of(scene.pieces(), [&](const Piece& piece) {
+    if (piece.transparent) return true;
+    bool is_before = false;
+    for (const std::uint32_t corner : scene.corners(piece)) {
+      const int side = plane.side_of(scene.vertices()[corner]);
+      if (side < 0) return false;
+      is_before = is_before || side > 0;
+    }
+    return is_before;
+  });
+}
+
+std::vector<SceneWithSky::Window> add_windows(const Scene& scene, SceneCopy& copy) {
+  std::vector<SceneWithSky::Window> windows;
+  const ClosedSurfaces surfaces(scene, ClosedSurfaces::Edges::kCutAtJunctions);
+  for (std::size_t s = 0; s < surfaces.surfaces().size(); ++s) {
+    const std::optional<ClosedSurface::Rim>& rim = surfaces.surfaces()[s].rim;
+    if (!rim || !lies_before(scene, *rim)) continue;
+    const std::vector<std::uint32_t> ring = convex_hole(scene, *rim);
+    if (ring.empty()) continue;
+    windows.push_back({s, copy.add_patch("window " + std::to_string(s))});
+    copy.add_face(windows.back().patch, ring);
+  }
+  return windows;
+}
+
+}  // namespace
 
 // Not much larger than the scene, so that bounds of roundings, which go by the largest coordinate, stay as small.
 SceneWithSky with_sky(const Scene& scene) {
@@ -127,7 +243,8 @@ SceneWithSky with_sky(const Scene& scene) {
     copy.add_face(sky, {corners[0], corners[one], corners[one + two], corners[two]});
     copy.add_face(sky, {corners[far], corners[far + two], corners[far + one + two], corners[far + one]});
   }
-  return {copy.take(), sky};
+  std::vector<SceneWithSky::Window> windows = add_windows(scene, copy);
+  return {copy.take(), sky, std::move(windows)};
 }
 
 namespace {
@@ -157,14 +274,14 @@ bool reaches_before(const Scene& scene, const Sight& from, const Sight& to) {
 }  // namespace
 
 // A point of a piece sees the front of another only if each reaches before the plane of the other. The backs are fronts
-// of the scene that is made for them.
+// of the scene that is made for them, where closed surfaces may hide them, too.
 ProvedZeros proved_zeros(const Scene& scene, std::span<const Selection> from) {
   const SceneWithBacks made = with_backs(scene);
-  std::vector<Sight> backs;
-  for (const std::optional<Selection>& patch : {made.backs, made.both}) {
-    if (patch) std::ranges::copy(sights_of(made.scene, *patch), std::back_inserter(backs));
-  }
-  const view_factors::Pairs rows(scene, from, {}, {});
+  std::vector<Selection> columns = made.whole;
+  for (const SceneWithBacks::Overlap& overlap : made.overlaps) columns.push_back(overlap.turned);
+  std::vector<std::vector<Sight>> backs;
+  for (const Selection& column : columns) backs.push_back(sights_of(made.scene, column));
+  const view_factors::Pairs rows(made.scene, of_any_scene(from), columns, {}, view_factors::Columns::kBacks);
   ProvedZeros zeros;
   for (std::size_t i = 0; i < from.size(); ++i) {
     kernel::poll();
@@ -172,9 +289,14 @@ ProvedZeros proved_zeros(const Scene& scene, std::span<const Selection> from) {
     const auto may_see = [&](const Sight& a, const Sight& b) {
       return reaches_before(made.scene, a, b) && reaches_before(made.scene, b, a);
     };
-    zeros.back.push_back(std::ranges::none_of(own, [&](const Sight& one) {
-      return std::ranges::any_of(backs, [&](const Sight& back) { return may_see(one, back); });
-    }));
+    const auto sees_some_of = [&](std::size_t column) {
+      return rows.may_see(i, column) && std::ranges::any_of(own, [&](const Sight& one) {
+               return std::ranges::any_of(backs[column], [&](const Sight& back) { return may_see(one, back); });
+             });
+    };
+    bool sees = false;
+    for (std::size_t column = 0; column < columns.size() && !sees; ++column) sees = sees_some_of(column);
+    zeros.back.push_back(!sees);
     zeros.open.push_back(rows.is_enclosed(i));
   }
   return zeros;

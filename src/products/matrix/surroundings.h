@@ -2,6 +2,7 @@
 // all patches and faces of the given scene are the same, and what was added is transparent.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -10,20 +11,40 @@
 
 namespace exactff::matrix {
 
-// The factor to the backs is the factor to `backs`, plus that to `both`, minus that to `fronts`. `both` is the union of
-// the backs and fronts of the planes in which they overlap in part, `fronts` the fronts among them.
+// All columns are patches of turned copies of faces, and of copies of fronts. The factor to the backs is the sum of
+// those to `whole`, plus, for each of `overlaps`, that to `both` minus that to `fronts`; the difference is 0 for a
+// patch that sees nothing of `turned`.
 struct SceneWithBacks {
-  Scene scene;
-  std::optional<Selection> backs, both, fronts;
-};
-[[nodiscard]] SceneWithBacks with_backs(const Scene& scene);
+  // Planes in which backs and fronts overlap in part: the union of both, the fronts, and the backs.
+  struct Overlap {
+    Selection turned, both, fronts;
+  };
 
+  Scene scene;
+  std::vector<Selection> whole;  // the backs of closed surfaces, which hide them from most, and the others
+  std::vector<Overlap> overlaps;
+};
+// With `fronts`, `whole` also has the fronts of all faces that are not transparent.
+[[nodiscard]] SceneWithBacks with_backs(const Scene& scene, bool fronts = false);
+
+// Within a surface with a hole in a plane, with nothing of the scene beyond the plane, what is open is what is seen of
+// the hole.
 struct SceneWithSky {
+  // A convex hole, filled by a face that looks at the surface.
+  struct Window {
+    std::size_t surface;  // an index of ClosedSurfaces::surfaces(), with edges cut at T-junctions
+    Selection patch;
+  };
+
   Scene scene;
   Selection sky;  // a cube around everything; its fronts look inward
+  std::vector<Window> windows;
 };
 // Throws InputError if the scene is so large that there is no double to put a corner at.
 [[nodiscard]] SceneWithSky with_sky(const Scene& scene);
+
+// The same patches of a scene with more faces.
+[[nodiscard]] std::vector<Selection> of_any_scene(std::span<const Selection> patches);
 
 // What is proved of patches without a factor: that no point of one sees a back, or anything open. False does not mean
 // that it does.

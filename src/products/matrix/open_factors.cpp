@@ -1,0 +1,75 @@
+#include "matrix/open_factors.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include "kernel/outward.h"
+
+namespace exactff::matrix {
+namespace {
+
+constexpr double kLittle = 0.5;  // of a view that may be the faces', by a rough bound
+
+ViewFactor rest_of(const ViewFactor& faces) {
+  ViewFactor rest = faces;
+  rest.area_to = 0.0;
+  rest.value = 1.0 - faces.value;
+  rest.lower = std::max(0.0, kernel::below(1.0 - faces.upper));
+  rest.upper = std::min(1.0, kernel::above(1.0 - faces.lower));
+  if (faces.claim == Claim::kZero) {
+    rest.claim = Claim::kCertified;
+    rest.lower = rest.upper = 1.0;
+  }
+  return rest;
+}
+
+}  // namespace
+
+OpenFactors::OpenFactors(const Scene& scene, std::span<const Selection> from, const ViewFactorOptions& options,
+                         const view_factors::Pairs& pairs)
+    : scene_(scene),
+      from_(from.begin(), from.end()),
+      options_(options),
+      pairs_(pairs),
+      made_(with_sky(scene)),
+      to_sky_(made_.scene, of_any_scene(from), std::span(&made_.sky, 1), options,
+              view_factors::Columns::kSurroundings) {
+  std::vector<Selection> windows;
+  for (const SceneWithSky::Window& window : made_.windows) windows.push_back(window.patch);
+  if (windows.empty()) return;
+  to_windows_.emplace(made_.scene, of_any_scene(from), windows, options, view_factors::Columns::kWindows);
+}
+
+const BackFactors& OpenFactors::to_faces() const {
+  std::call_once(faces_once_, [&] {
+    to_faces_ = std::make_unique<const BackFactors>(scene_, from_, options_, BackFactors::Of::kAllFaces);
+  });
+  return *to_faces_;
+}
+
+bool OpenFactors::has_planar_faces(std::size_t row) const {
+  return std::ranges::all_of(scene_.faces_of(from_[row]),
+                             [&](FaceId face) { return scene_.face(face).shape == FaceShape::kPlanar; });
+}
+
+ViewFactor OpenFactors::of_row(std::size_t row) const {
+  if (pairs_.is_enclosed(row)) return {};
+  for (std::size_t w = 0; w < made_.windows.size(); ++w) {
+    if (pairs_.is_within(row, made_.windows[w].surface)) {
+      return factor_of(*to_windows_, row * made_.windows.size() + w);
+    }
+  }
+  if (getenv("TR")) {
+    fprintf(stderr, "row %zu planar %d unhidden %g\n", row, has_planar_faces(row), to_faces().unhidden(row));
+    const auto f = to_faces().of_row(row);
+    fprintf(stderr, "faces %g %g acc %d\n", f.lower, f.upper, f.accurate);
+  }
+  if (has_planar_faces(row) && to_faces().unhidden(row) < kLittle) {
+    const ViewFactor rest = rest_of(to_faces().of_row(row));
+    if (rest.accurate) return rest;
+  }
+  return factor_of(to_sky_, row);
+}
+
+}  // namespace exactff::matrix

@@ -1,0 +1,49 @@
+// For each row, what is open: by the cheapest of a few ways that hold.
+//
+// - Closed surfaces around all that the row sees: nothing.
+// - Within a surface with a convex hole and nothing beyond: the factor to the hole (SceneWithSky).
+// - If little is there to be seen: the rest that the faces leave of 1, from either side. The row's faces must be
+// planar,
+//   since the pieces of others see through each other.
+// - Otherwise, or if the rest is not accurate: the factor to the sky.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "exactff/view_factors.h"
+#include "matrix/back_factors.h"
+#include "matrix/surroundings.h"
+#include "view_factors/pairs.h"
+
+namespace exactff::matrix {
+
+class OpenFactors {
+ public:
+  // Keeps references to the scene and its pairs, whose rows these are.
+  OpenFactors(const Scene& scene, std::span<const Selection> from, const ViewFactorOptions& options,
+              const view_factors::Pairs& pairs);
+
+  // Of the row's patch, without its area. From any thread.
+  [[nodiscard]] ViewFactor of_row(std::size_t row) const;
+
+ private:
+  [[nodiscard]] const BackFactors& to_faces() const;
+  [[nodiscard]] bool has_planar_faces(std::size_t row) const;
+
+  const Scene& scene_;
+  std::vector<Selection> from_;
+  ViewFactorOptions options_;
+  const view_factors::Pairs& pairs_;
+  SceneWithSky made_;
+  view_factors::Pairs to_sky_;
+  std::optional<view_factors::Pairs> to_windows_;
+  mutable std::once_flag faces_once_;
+  mutable std::unique_ptr<const BackFactors> to_faces_;  // made when asked for
+};
+
+}  // namespace exactff::matrix
