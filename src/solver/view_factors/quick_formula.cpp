@@ -22,6 +22,7 @@ constexpr double kDifferenceError = 0x1p-50;
 constexpr double kOfFirstOrder = 4.0;
 constexpr double kOfTerm = 0x1p-49;
 constexpr double kMostAngle = std::numbers::pi - 0x1p-6;
+constexpr double kMostShift = 0x1p-4;  // of a shared crossing
 
 struct FourVec {
   Four x, y, z;
@@ -102,14 +103,25 @@ struct FourCrossing {
   }
 };
 
-// The same numbers for both parts that end there.
+// The angle by which rounding may have moved the crossing of a segment and a plane along the segment.
+EXACTFF_INLINE Four shift_of(const FourCrossing& crossing, const FourSegment& segment, const FourSegment& other) {
+  const Four of_plane = kDifferenceError * (at_least_length(other.a) + other.length) *
+                        (at_least_length(segment.a) + at_least_length(segment.b())) / crossing.weight;
+  const Four shift = (kDifferenceError + of_plane * segment.length) / length(crossing.at);
+  return where(crossing.weight > 0.0, shift, four(kInfinity));
+}
+
+// The same numbers for both parts that end there: where it lies along them cancels. But if it may lie anywhere, as
+// where both planes nearly are the receiver's, the parts may turn the wrong way round x.
 EXACTFF_INLINE FourSightings shared(const FourSegment& first, const FourSegment& second) {
-  const FourVec at = FourCrossing(first, second.plane).at, b = first.b();
+  const FourCrossing crossing(first, second.plane);
+  const FourVec &at = crossing.at, b = first.b();
   const Four far = length(at);
   const Four d = magnitude(dot(second.plane, at)) / (second.size * far) + second.turn() + kDifferenceError / far;
   const Four tan_of_half = (length(first.a) * length(b) - dot(first.a, b)) / first.size;
   const Four of_sum = d * (1.0 + 2.0 * tan_of_half);
-  return {at, Four{}, where(of_sum >= 0.0, of_sum, four(kInfinity))};
+  const Four shift = shift_of(crossing, first, second);
+  return {at, Four{}, where(shift < kMostShift, where(of_sum >= 0.0, of_sum, four(kInfinity)), four(kInfinity))};
 }
 
 // Of an end of the edge, as seen from x.
@@ -121,11 +133,8 @@ EXACTFF_INLINE FourSightings sighting(const QuickPart::End& end, const FourSegme
   const FourSegment other(end.other, x);
   if (end.kind == QuickPart::End::Kind::kSharedOnEdge) return shared(edge, other);
   if (end.kind == QuickPart::End::Kind::kSharedOnOther) return shared(other, edge);
-  const auto [at, weight] = FourCrossing(edge, other.plane);
-  const Four of_plane = kDifferenceError * (at_least_length(other.a) + other.length) *
-                        (at_least_length(edge.a) + at_least_length(edge.b())) / weight;
-  const Four error = (kDifferenceError + of_plane * edge.length) / length(at);
-  return {at, where(weight > 0.0, error, four(kInfinity)), Four{}};
+  const FourCrossing crossing(edge, other.plane);
+  return {crossing.at, shift_of(crossing, edge, other), Four{}};
 }
 
 // An edge that is seen counter-clockwise round the visible region has a normal a x b that points away from the

@@ -57,6 +57,61 @@ struct CutEdge {
   }
 };
 
+// From x on, where the planes through x and both segments meet, on the first one; nothing if that is not between the
+// ends of both.
+std::optional<Long3> crossing_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const Long3 p = minus(a, {}), q = minus(b, {}), r = minus(c, {}), s = minus(d, {});
+  const Long3 one = cross(p, q), other = cross(r, s);
+  const long double at_p = dot(other, p), at_q = dot(other, q);
+  if (!(at_p * at_q < 0.0L) || !(dot(one, r) * dot(one, s) < 0.0L)) return std::nullopt;
+  const long double share = at_p / (at_p - at_q);
+  Long3 at;
+  for (std::size_t i = 0; i < 3; ++i) at[i] = p[i] + share * (q[i] - p[i]);
+  return at;
+}
+
+long double term_of(const Vec3& a, const Vec3& b, const Long3& from, const Long3& to, double sign, const Vec3& normal) {
+  const Long3 plane = cross(minus(a, {}), minus(b, {}));
+  const long double angle = std::atan2(dot(cross(from, to), plane) / length(plane), dot(from, to));
+  return -sign * angle * dot(plane, minus(normal, {})) / length(plane) / (2.0L * std::numbers::pi_v<long double>);
+}
+
+// A triangle round x that is hardly above its plane: from a corner along two lines, which the side beyond cuts off.
+// Where they cross may be anywhere, as far as doubles tell.
+TEST(QuickFormula, KnowsWhereEdgesNearTheHorizonMayTurnRoundThePoint) {
+  Random random(5);
+  const double size = std::sqrt(0.3 * 0.3 + 0.7 * 0.7 + 1.0);
+  const Vec3 normal{-0.3 / size, -0.7 / size, 1.0 / size}, x{};
+  std::size_t known = 0, round_x = 0;
+  for (int round = 0; round < 200000; ++round) {
+    const double height = std::ldexp(1.0, -random.integer(20, 60));
+    const auto point = [&] {
+      const double u = random.between(-1.0, 1.0), v = random.between(-1.0, 1.0);
+      return Vec3{u, v, 0.3 * u + 0.7 * v + height * random.unit()};
+    };
+    const Vec3 corner = point(), a = point(), b = point(), c = point(), d = point();
+    const auto first = crossing_of(a, b, corner, c), second = crossing_of(a, b, corner, d);
+    if (!first || !second) continue;
+    const Long3 start = minus(corner, x);
+    const long double expected = term_of(a, b, *first, *second, 1.0, normal) +
+                                 term_of(corner, d, start, *second, -1.0, normal) +
+                                 term_of(corner, c, start, *first, 1.0, normal);
+    const QuickPart::Segment side = segment(a, b), to_c = segment(corner, c), to_d = segment(corner, d);
+    const QuickPart::End at_corner{Kind::kVertex, corner, {}};
+    const std::vector<QuickPart> parts{{side, {Kind::kSharedOnEdge, {}, to_c}, {Kind::kSharedOnEdge, {}, to_d}, 1.0},
+                                       {to_d, at_corner, {Kind::kSharedOnOther, {}, side}, -1.0},
+                                       {to_c, at_corner, {Kind::kSharedOnOther, {}, side}, 1.0}};
+    Evaluated found;
+    evaluate(parts, normal, {&x, 1}, {&found, 1});
+    if (!(found.rounding < 0x1p-6)) continue;
+    ++known;
+    round_x += std::abs(expected) > 0.5L ? 1 : 0;
+    EXPECT_LE(std::abs(found.value - expected), found.rounding) << round;
+  }
+  EXPECT_GE(known, 1000U);
+  EXPECT_GE(round_x, 10U);
+}
+
 TEST(QuickFormula, ErrsByNoMoreThanItSays) {
   Random random(1);
   const Vec3 normal{0.0, 0.0, 1.0};
