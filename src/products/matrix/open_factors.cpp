@@ -1,15 +1,15 @@
 #include "matrix/open_factors.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
+#include <cstddef>
 
 #include "kernel/outward.h"
 
 namespace exactff::matrix {
 namespace {
 
-constexpr double kLittle = 0.5;  // of a view that may be the faces', by a rough bound
+constexpr std::size_t kMostPieces = 4096;  // of more, the rest is hardly known soon
+constexpr double kLittle = 0.5;            // of a view that may be the faces', by a rough bound
 
 ViewFactor rest_of(const ViewFactor& faces) {
   ViewFactor rest = faces;
@@ -48,7 +48,8 @@ const BackFactors& OpenFactors::to_faces() const {
   return *to_faces_;
 }
 
-bool OpenFactors::has_planar_faces(std::size_t row) const {
+bool OpenFactors::may_be_rest(std::size_t row) const {
+  if (scene_.pieces().size() > kMostPieces) return false;
   return std::ranges::all_of(scene_.faces_of(from_[row]),
                              [&](FaceId face) { return scene_.face(face).shape == FaceShape::kPlanar; });
 }
@@ -60,12 +61,7 @@ ViewFactor OpenFactors::of_row(std::size_t row) const {
       return factor_of(*to_windows_, row * made_.windows.size() + w);
     }
   }
-  if (getenv("TR")) {
-    fprintf(stderr, "row %zu planar %d unhidden %g\n", row, has_planar_faces(row), to_faces().unhidden(row));
-    const auto f = to_faces().of_row(row);
-    fprintf(stderr, "faces %g %g acc %d\n", f.lower, f.upper, f.accurate);
-  }
-  if (has_planar_faces(row) && to_faces().unhidden(row) < kLittle) {
+  if (may_be_rest(row) && to_faces().unhidden(row) < kLittle) {
     const ViewFactor rest = rest_of(to_faces().of_row(row));
     if (rest.accurate) return rest;
   }

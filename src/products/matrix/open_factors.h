@@ -33,7 +33,7 @@ class OpenFactors {
 
  private:
   [[nodiscard]] const BackFactors& to_faces() const;
-  [[nodiscard]] bool has_planar_faces(std::size_t row) const;
+  [[nodiscard]] bool may_be_rest(std::size_t row) const;
 
   const Scene& scene_;
   std::vector<Selection> from_;
