@@ -16,6 +16,7 @@
 #include "property/closed_rooms.h"
 #include "support/random_scenes.h"
 #include "view_factors/pairs.h"
+#include "view_factors/patch_parts.h"
 
 namespace exactff::validation::enclosed_patches {
 namespace {
@@ -208,17 +209,12 @@ struct BackCounts {
   std::size_t proved = 0, seen = 0;
 };
 
-bool has_planar_faces(const Scene& scene, const Selection& patch) {
-  return std::ranges::all_of(scene.faces_of(patch),
-                             [&](FaceId face) { return scene.face(face).shape == FaceShape::kPlanar; });
-}
-
 // Where a row is proved to see no back, no point does. One on a bent face may see through a part of it.
 void judge_backs(const Scene& scene, const std::string& where, BackCounts& counts) {
   constexpr double kRounding = 1e-9;
   std::vector<Selection> rows;
   for (const Selection& patch : all_of(scene)) {
-    if (!scene.faces_of(patch).empty() && has_planar_faces(scene, patch)) rows.push_back(patch);
+    if (!scene.faces_of(patch).empty() && view_factors::is_planar(scene, patch)) rows.push_back(patch);
   }
   std::vector<ViewFactor> backs;
   try {

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "kernel/outward.h"
+#include "view_factors/patch_parts.h"
 
 namespace exactff::matrix {
 namespace {
@@ -49,9 +50,7 @@ const BackFactors& OpenFactors::to_faces() const {
 }
 
 bool OpenFactors::may_be_rest(std::size_t row) const {
-  if (scene_.pieces().size() > kMostPieces) return false;
-  return std::ranges::all_of(scene_.faces_of(from_[row]),
-                             [&](FaceId face) { return scene_.face(face).shape == FaceShape::kPlanar; });
+  return scene_.pieces().size() <= kMostPieces && view_factors::is_planar(scene_, from_[row]);
 }
 
 ViewFactor OpenFactors::of_row(std::size_t row) const {

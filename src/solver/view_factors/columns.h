@@ -1,4 +1,4 @@
-// What the columns of a matrix are. Of columns that are not patches of the scene, nobody asks what is seen from there.
+// What the columns of a matrix are. Only between patches of the scene is the factor of the other direction wanted, too.
 #pragma once
 
 namespace exactff::view_factors {

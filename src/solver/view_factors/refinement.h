@@ -108,7 +108,7 @@ class Refinement {
   const PreparedPatch& to_;
   ViewFactorOptions options_;
   std::uint64_t pause_;                       // the effort at the next one
-  double smaller_area_;                       // of the two patches
+  double smaller_area_;                       // of the two patches (counted_area)
   double least_error_;                        // shares of less need not be improved
   std::vector<std::unique_ptr<Pair>> pairs_;  // null: sees nothing
   std::vector<Waiting> waiting_;              // a heap
