@@ -180,10 +180,10 @@ void Finder::find_rims() {
 // False if the edges do not lie in one plane, or on one line.
 bool Finder::find_plane(ClosedSurface::Rim& rim) const {
   const auto vertices = scene_.vertices();
-  const auto [first, second] = rim.edges.front();
-  const Vec3 &a = vertices[first], &b = vertices[second];
+  const auto& ends = rim.edges.front();
+  const Vec3 &a = vertices[ends.first], &b = vertices[ends.second];
   const auto third = std::ranges::find_if(rim.edges, [&](const auto& edge) {
-    return edge.first != first && edge.first != second && !are_straight(a, b, vertices[edge.first]);
+    return edge.first != ends.first && edge.first != ends.second && !are_straight(a, b, vertices[edge.first]);
   });
   if (third == rim.edges.end()) return false;
   rim.plane = {a, b, vertices[third->first]};
