@@ -64,18 +64,20 @@ PatchBounds::OfPart& PatchBounds::of(std::size_t part) {
 
 PatchBounds::OfPart& PatchBounds::with_slopes(std::size_t part) {
   OfPart& of = this->of(part);
-  if (std::exchange(of.slopes_asked, true) || to_.surrounds()) return of;
-  add_slopes(part, of);
+  if (!std::exchange(of.slopes_asked, true)) add_slopes(part, of);
   return of;
 }
 
 void PatchBounds::add_slopes(std::size_t part, OfPart& of) {
   const Part& receiver = from_.parts[part];
   const std::span<const std::uint32_t> occluders = from_.seen.lists(seen_, from_.parts)[part].occluders;
-  for (const Part& source : to_.parts) {
+  const std::size_t sources = to_.surrounds() ? 1 : to_.parts.size();
+  for (std::size_t s = 0; s < sources; ++s) {
     if (pieces_ > SlopeBound::kMostPieces) return of.slopes.clear();
     kernel::poll();
-    const std::optional<Sight> sight = sight_of(scene_, occluders, receiver, source, receiver.face);
+    const std::optional<Sight> sight = to_.surrounds()
+                                           ? sight_of_open(scene_, occluders, receiver, receiver.face)
+                                           : sight_of(scene_, occluders, receiver, to_.parts[s], receiver.face);
     if (!sight) continue;
     of.slopes.emplace_back(*sight);
     pieces_ += of.slopes.back().pieces();

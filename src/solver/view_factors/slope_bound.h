@@ -1,4 +1,4 @@
-// How fast the factor of a source can change from point to point, whatever hides it.
+// How fast the factor of a source, or of what is open, can change from point to point, whatever hides it.
 //
 // As x moves in the receiver's plane, what it sees changes only in directions that an edge sweeps over: of the source,
 // or of an occluder. An edge at a distance of d or more turns by at most |dx| / d, all along the angle w under which it
@@ -8,6 +8,8 @@
 //
 // From within r of a point c, a piece whose ends have the distances a and b from c is seen under an angle that is at
 // most r / (a - r) + r / (b - r) more than from c.
+//
+// Of what is open there is no source, and only edges of occluders count: cos is 0 on the horizon.
 //
 // Two kinds of pieces are left out.
 // - One between two occluders whose rings run through it in opposite directions, if the whole region lies on the same

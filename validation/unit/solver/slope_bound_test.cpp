@@ -11,6 +11,7 @@
 
 #include "exactff/exact.h"
 #include "exactff/models.h"
+#include "exactff/view.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
 #include "kernel/vec.h"
@@ -71,36 +72,72 @@ std::vector<Vec3> points_of_tile(const Part& part, Random& random, double size) 
   return points;
 }
 
-// Faces of all kinds in between; tiles from large to tiny.
-TEST(SlopeBound, IsAtLeastEveryChangeOfThePointFactor) {
+// Faces of all kinds stand in between.
+Scene scene_of(Random& random, std::uint64_t seed) {
+  const std::string model = random.one_in(2) ? "soup" : random.one_in(2) ? "lattice" : "karkanis";
+  return models::make_scene(model + ":n=" + std::to_string(random.integer(1, 6)) +
+                            ",cover=1,seed=" + std::to_string(seed % 1000000));
+}
+
+struct Judged {
   int finite = 0, tight = 0;
+};
+
+// On tiles from large to tiny.
+template <class Factor>
+void judge(const SlopeBound& bound, const Part& receiver, const Factor& factor, Random& random, Judged& judged) {
+  for (const double size : {0.25, 0.03, 0.004}) {
+    const std::vector<Vec3> points = points_of_tile(receiver, random, size);
+    double radius = 0.0;
+    for (const Vec3& point : points) radius = std::max(radius, kernel::distance(points[0], point));
+    const double slope = bound.about(points[0], radius);
+    if (!(slope < HUGE_VAL)) continue;
+    ++judged.finite;
+    double steepest = 0.0;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+      const double distance = kernel::distance(points[i], points[i + 1]);
+      const double change = std::abs(factor(points[i]) - factor(points[i + 1]));
+      EXPECT_LE(change, slope * distance + 0x1p-40) << size;
+      steepest = std::max(steepest, change / distance);
+    }
+    judged.tight += steepest > 0.1 * slope ? 1 : 0;
+  }
+}
+
+TEST(SlopeBound, IsAtLeastEveryChangeOfThePointFactor) {
+  Judged judged;
   for (std::uint64_t s = 0; s < scaled_count(120); ++s) {
+    SCOPED_TRACE(s);
     Random random(seed_of(s));
-    const std::string model = random.one_in(2) ? "soup" : random.one_in(2) ? "lattice" : "karkanis";
-    const Scene scene = models::make_scene(model + ":n=" + std::to_string(random.integer(1, 6)) +
-                                           ",cover=1,seed=" + std::to_string(seed_of(s) % 1000000));
+    const Scene scene = scene_of(random, seed_of(s));
     const Seen seen(scene);
     if (!seen.sees()) continue;
-    const SlopeBound bound = seen.bound();
-    for (const double size : {0.25, 0.03, 0.004}) {
-      const std::vector<Vec3> points = points_of_tile(seen.receiver(), random, size);
-      double radius = 0.0;
-      for (const Vec3& point : points) radius = std::max(radius, kernel::distance(points[0], point));
-      const double slope = bound.about(points[0], radius);
-      if (!(slope < HUGE_VAL)) continue;
-      ++finite;
-      double steepest = 0.0;
-      for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-        const double distance = kernel::distance(points[i], points[i + 1]);
-        const double change = std::abs(seen.factor(points[i]) - seen.factor(points[i + 1]));
-        EXPECT_LE(change, slope * distance + 0x1p-40) << model << ' ' << s << ' ' << size;
-        steepest = std::max(steepest, change / distance);
-      }
-      tight += steepest > 0.1 * slope ? 1 : 0;
-    }
+    const auto factor = [&](const Vec3& at) { return seen.factor(at); };
+    judge(seen.bound(), seen.receiver(), factor, random, judged);
   }
-  EXPECT_GT(finite, 100);
-  EXPECT_GT(tight, finite / 20);
+  EXPECT_GT(judged.finite, 100);
+  EXPECT_GT(judged.tight, judged.finite / 20);
+}
+
+// From all faces, since those of the model's occluders see one another.
+TEST(SlopeBound, OfWhatIsOpenIsAtLeastEveryChangeInTheView) {
+  Judged judged;
+  for (std::uint64_t s = 0; s < scaled_count(40); ++s) {
+    SCOPED_TRACE(s);
+    Random random(seed_of(s));
+    const Scene scene = scene_of(random, seed_of(s));
+    const ExactScene exact(scene);
+    const Selection patch{static_cast<PatchId>(random.below(scene.patches().size())), {}, scene.id()};
+    const std::vector<Part> parts = parts_of(exact, patch);
+    const Part& receiver = parts[random.below(parts.size())];
+    const Sight sight = sight_of_open(exact, SeenParts(exact).seen_from(receiver).occluders, receiver, receiver.face);
+    const auto open = [&](const Vec3& at) {
+      return view(scene, receiver_at(exact, at, sight.receiver, receiver.face)).open.value;
+    };
+    judge(SlopeBound(sight), receiver, open, random, judged);
+  }
+  EXPECT_GT(judged.finite, 50);
+  EXPECT_GT(judged.tight, judged.finite / 20);
 }
 
 class SlopeOfSquares : public testing::Test {
