@@ -43,7 +43,7 @@ void clamp(ViewFactor& sum) {
   sum.value = std::clamp(sum.value, sum.lower, sum.upper);
 }
 
-// In this order: of all fronts, if asked for, and of backs; then three for each overlap.
+// In this order; three for each overlap.
 std::vector<Selection> columns_of(const SceneWithBacks& made) {
   std::vector<Selection> columns = made.whole;
   for (const auto& [turned, both, fronts] : made.overlaps) columns.insert(columns.end(), {turned, both, fronts});
@@ -61,9 +61,9 @@ ViewFactor factor_of(const view_factors::Pairs& pairs, std::size_t entry, double
   return result;
 }
 
-BackFactors::BackFactors(const Scene& scene, std::span<const Selection> from, const ViewFactorOptions& options, Of of)
+BackFactors::BackFactors(const Scene& scene, std::span<const Selection> from, const ViewFactorOptions& options)
     : accuracy_(options.accuracy),
-      made_(with_backs(scene, of == Of::kAllFaces)),
+      made_(with_backs(scene)),
       columns_(columns_of(made_)),
       pairs_(made_.scene, of_any_scene(from), columns_, options, view_factors::Columns::kBacks),
       area_(find_area()) {}
@@ -87,14 +87,6 @@ std::vector<BackFactors::Term> BackFactors::terms_of(std::size_t row) const {
     if (pairs_.may_see(row, column)) terms.insert(terms.end(), {{column + 1, false}, {column + 2, true}});
   }
   return terms;
-}
-
-double BackFactors::unhidden(std::size_t row) const {
-  double sum = 0.0;
-  for (const auto& [column, is_subtracted] : terms_of(row)) {
-    if (!is_subtracted) sum += pairs_.unhidden(row, column);
-  }
-  return std::min(1.0, sum);
 }
 
 // No entry is the transpose of another: the patches of the rows are not among the columns.

@@ -1,4 +1,4 @@
-// For each row, what it sees of backs; or of all faces, from either side.
+// For each row, what it sees of backs.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,10 @@ namespace exactff::matrix {
 
 class BackFactors {
  public:
-  enum class Of { kBacks, kAllFaces };
-
-  BackFactors(const Scene& scene, std::span<const Selection> from, const ViewFactorOptions& options, Of of);
+  BackFactors(const Scene& scene, std::span<const Selection> from, const ViewFactorOptions& options);
 
   // Of the row's patch, without its area. From any thread.
   [[nodiscard]] ViewFactor of_row(std::size_t row) const;
-  // About what the row would see if nothing were hidden; at most 1.
-  [[nodiscard]] double unhidden(std::size_t row) const;
 
  private:
   struct Term {

@@ -41,7 +41,7 @@ EntryJobs::EntryJobs(const Scene& scene, std::span<const Selection> from, std::s
       pairs_(scene, from, to, options.factors),
       width_(to.size() + (options.backs ? 1 : 0) + (options.open ? 1 : 0)) {
   if (from.empty()) return;
-  if (options.backs) to_backs_.emplace(scene, from, options.factors, BackFactors::Of::kBacks);
+  if (options.backs) to_backs_.emplace(scene, from, options.factors);
   if (options.open) to_sky_.emplace(scene, from, options.factors, pairs_);
 }
 

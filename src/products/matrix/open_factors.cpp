@@ -4,13 +4,14 @@
 #include <cstddef>
 
 #include "kernel/outward.h"
+#include "matrix/back_factors.h"
 #include "view_factors/patch_parts.h"
 
 namespace exactff::matrix {
 namespace {
 
 constexpr std::size_t kMostPieces = 4096;  // of more, the rest is hardly known soon
-constexpr double kLittle = 0.5;            // of a view that may be the faces', by a rough bound
+constexpr double kLittle = 0.45;           // of a view that may be the faces', by a rough bound
 
 ViewFactor rest_of(const ViewFactor& faces) {
   ViewFactor rest = faces;
@@ -27,6 +28,39 @@ ViewFactor rest_of(const ViewFactor& faces) {
 
 }  // namespace
 
+// What rows see of faces, from either side.
+class OpenFactors::Sides {
+ public:
+  Sides(const Scene& scene, std::span<const Selection> from, const ViewFactorOptions& options)
+      : made_(with_sides(scene)),
+        columns_(columns_of(made_)),
+        pairs_(made_.scene, of_any_scene(from), columns_, options, view_factors::Columns::kBacks) {}
+
+  // About what the row would see if nothing were hidden; at most 1.
+  [[nodiscard]] double unhidden(std::size_t row) const {
+    return columns_.empty() ? 0.0 : pairs_.unhidden(row, column_of(row));
+  }
+  [[nodiscard]] ViewFactor of_row(std::size_t row) const {
+    return columns_.empty() ? ViewFactor{} : factor_of(pairs_, row * columns_.size() + column_of(row));
+  }
+
+ private:
+  enum Column : std::size_t { kAll, kClosedBacks, kOthers };
+  [[nodiscard]] static std::vector<Selection> columns_of(const SceneWithSides& made) {
+    if (!made.all) return {};
+    if (!made.closed_backs) return {*made.all};
+    return {*made.all, *made.closed_backs, *made.others};
+  }
+  // The fewest sides that are all that the row sees.
+  [[nodiscard]] std::size_t column_of(std::size_t row) const {
+    return columns_.size() > 1 && !pairs_.may_see(row, kClosedBacks) ? kOthers : kAll;
+  }
+
+  SceneWithSides made_;
+  std::vector<Selection> columns_;
+  view_factors::Pairs pairs_;
+};
+
 OpenFactors::OpenFactors(const Scene& scene, std::span<const Selection> from, const ViewFactorOptions& options,
                          const view_factors::Pairs& pairs)
     : scene_(scene),
@@ -42,11 +76,11 @@ OpenFactors::OpenFactors(const Scene& scene, std::span<const Selection> from, co
   to_windows_.emplace(made_.scene, of_any_scene(from), windows, options, view_factors::Columns::kWindows);
 }
 
-const BackFactors& OpenFactors::to_faces() const {
-  std::call_once(faces_once_, [&] {
-    to_faces_ = std::make_unique<const BackFactors>(scene_, from_, options_, BackFactors::Of::kAllFaces);
-  });
-  return *to_faces_;
+OpenFactors::~OpenFactors() = default;
+
+const OpenFactors::Sides& OpenFactors::sides() const {
+  std::call_once(sides_once_, [&] { sides_ = std::make_unique<const Sides>(scene_, from_, options_); });
+  return *sides_;
 }
 
 bool OpenFactors::may_be_rest(std::size_t row) const {
@@ -60,8 +94,8 @@ ViewFactor OpenFactors::of_row(std::size_t row) const {
       return factor_of(*to_windows_, row * made_.windows.size() + w);
     }
   }
-  if (may_be_rest(row) && to_faces().unhidden(row) < kLittle) {
-    const ViewFactor rest = rest_of(to_faces().of_row(row));
+  if (may_be_rest(row) && sides().unhidden(row) < kLittle) {
+    const ViewFactor rest = rest_of(sides().of_row(row));
     if (rest.accurate) return rest;
   }
   return factor_of(to_sky_, row);

@@ -3,8 +3,7 @@
 // - Closed surfaces around all that the row sees: nothing.
 // - Within a surface with a convex hole and nothing beyond: the factor to the hole (SceneWithSky).
 // - If little is there to be seen: the rest that the faces leave of 1, from either side. The row's faces must be
-// planar,
-//   since the pieces of others see through each other.
+//   planar, since the pieces of others see through each other.
 // - Otherwise, or if the rest is not accurate: the factor to the sky.
 #pragma once
 
@@ -16,7 +15,6 @@
 #include <vector>
 
 #include "exactff/view_factors.h"
-#include "matrix/back_factors.h"
 #include "matrix/surroundings.h"
 #include "view_factors/pairs.h"
 
@@ -27,12 +25,16 @@ class OpenFactors {
   // Keeps references to the scene and its pairs, whose rows these are.
   OpenFactors(const Scene& scene, std::span<const Selection> from, const ViewFactorOptions& options,
               const view_factors::Pairs& pairs);
+  ~OpenFactors();
+  OpenFactors(const OpenFactors&) = delete;
+  OpenFactors& operator=(const OpenFactors&) = delete;
 
   // Of the row's patch, without its area. From any thread.
   [[nodiscard]] ViewFactor of_row(std::size_t row) const;
 
  private:
-  [[nodiscard]] const BackFactors& to_faces() const;
+  class Sides;
+  [[nodiscard]] const Sides& sides() const;
   [[nodiscard]] bool may_be_rest(std::size_t row) const;
 
   const Scene& scene_;
@@ -42,8 +44,8 @@ class OpenFactors {
   SceneWithSky made_;
   view_factors::Pairs to_sky_;
   std::optional<view_factors::Pairs> to_windows_;
-  mutable std::once_flag faces_once_;
-  mutable std::unique_ptr<const BackFactors> to_faces_;  // made when asked for
+  mutable std::once_flag sides_once_;
+  mutable std::unique_ptr<const Sides> sides_;  // made when asked for
 };
 
 }  // namespace exactff::matrix

@@ -39,6 +39,10 @@ std::vector<FaceId> faces_with_area(const Scene& scene) {
   return faces;
 }
 
+bool belongs_to(const ClosedSurfaces& surfaces, std::uint32_t piece) {
+  return !surfaces.empty() && surfaces.of_piece(piece) != ClosedSurfaces::kNone;
+}
+
 constexpr std::size_t kMostOverlaps = 16;  // planes beyond share patches with others
 
 // The pieces of a scene and their backs that lie in one oriented plane, as indices of pieces.
@@ -90,11 +94,9 @@ std::vector<Selection> of_any_scene(std::span<const Selection> patches) {
   return result;
 }
 
-SceneWithBacks with_backs(const Scene& scene, bool fronts_too) {
+SceneWithBacks with_backs(const Scene& scene) {
   const ClosedSurfaces surfaces(scene, ClosedSurfaces::Edges::kCutAtJunctions);
-  const auto is_of_closed = [&](std::uint32_t piece) {
-    return !surfaces.empty() && surfaces.of_piece(piece) != ClosedSurfaces::kNone;
-  };
+  const auto is_of_closed = [&](std::uint32_t piece) { return belongs_to(surfaces, piece); };
   SceneCopy copy(scene);
   std::array<std::optional<Selection>, 2> backs;  // of closed surfaces, and others
   std::vector<SceneWithBacks::Overlap> overlaps;
@@ -127,18 +129,32 @@ SceneWithBacks with_backs(const Scene& scene, bool fronts_too) {
       copy.add_face(fronts, corners_of(scene, scene.pieces()[front]));
     }
   }
-  std::optional<Selection> all_fronts;
-  for (const Piece& piece : scene.pieces()) {
-    if (!fronts_too || piece.transparent) continue;
-    if (!all_fronts) all_fronts = copy.add_patch("all fronts");
-    copy.add_face(*all_fronts, corners_of(scene, piece));
-  }
   SceneWithBacks result{copy.take(), {}, std::move(overlaps)};
   for (const std::optional<Selection>& patch : backs) {
     if (patch) result.whole.push_back(*patch);
   }
-  if (all_fronts) result.whole.push_back(*all_fronts);
   return result;
+}
+
+SceneWithSides with_sides(const Scene& scene) {
+  const ClosedSurfaces surfaces(scene, ClosedSurfaces::Edges::kCutAtJunctions);
+  SceneCopy copy(scene);
+  std::optional<Selection> all, closed_backs, others;
+  const auto add = [&](std::optional<Selection>& patch, const char* name, const std::vector<std::uint32_t>& corners) {
+    if (!patch) patch = copy.add_patch(name);
+    copy.add_face(*patch, corners);
+  };
+  for (std::uint32_t p = 0; p < scene.pieces().size(); ++p) {
+    const Piece& piece = scene.pieces()[p];
+    if (piece.transparent) continue;
+    const std::vector<std::uint32_t> front = corners_of(scene, piece), back = reversed_corners_of(scene, piece);
+    add(all, "all sides", front);
+    add(all, "all sides", back);
+    if (surfaces.empty()) continue;
+    add(others, "other sides", front);
+    belongs_to(surfaces, p) ? add(closed_backs, "backs of closed surfaces", back) : add(others, "other sides", back);
+  }
+  return {copy.take(), all, closed_backs, others};
 }
 
 namespace {

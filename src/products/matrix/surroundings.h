@@ -11,9 +11,9 @@
 
 namespace exactff::matrix {
 
-// All columns are patches of turned copies of faces, and of copies of fronts. The factor to the backs is the sum of
-// those to `whole`, plus, for each of `overlaps`, that to `both` minus that to `fronts`; the difference is 0 for a
-// patch that sees nothing of `turned`.
+// All columns are patches of turned copies of faces, and of copies of fronts in the planes of `overlaps`. The factor to
+// the backs is the sum of those to `whole`, plus, for each of `overlaps`, that to `both` minus that to `fronts`; the
+// difference is 0 for a patch that sees nothing of `turned`.
 struct SceneWithBacks {
   // Planes in which backs and fronts overlap in part: the union of both, the fronts, and the backs.
   struct Overlap {
@@ -24,8 +24,17 @@ struct SceneWithBacks {
   std::vector<Selection> whole;  // the backs of closed surfaces, which hide them from most, and the others
   std::vector<Overlap> overlaps;
 };
-// With `fronts`, `whole` also has the fronts of all faces that are not transparent.
-[[nodiscard]] SceneWithBacks with_backs(const Scene& scene, bool fronts = false);
+[[nodiscard]] SceneWithBacks with_backs(const Scene& scene);
+
+// All that hides anything, from either side, as patches of copies of fronts and of turned copies. What overlaps in a
+// plane counts once.
+struct SceneWithSides {
+  Scene scene;
+  std::optional<Selection> all;  // nothing if all faces are transparent
+  // If there are closed surfaces: their backs, which they hide from most, and all other sides.
+  std::optional<Selection> closed_backs, others;
+};
+[[nodiscard]] SceneWithSides with_sides(const Scene& scene);
 
 // Within a surface with a hole in a plane, with nothing of the scene beyond the plane, what is open is what is seen of
 // the hole.

@@ -14,7 +14,11 @@
 #include "matrix/row_facts.h"
 #include "matrix/surroundings.h"
 #include "support/program.h"
+#include "view_factors/exact_scene.h"
 #include "view_factors/pairs.h"
+#include "view_factors/patch_bounds.h"
+#include "view_factors/prepared_patch.h"
+#include "view_factors/seen_parts.h"
 
 namespace exactff::matrix {
 namespace {
@@ -246,6 +250,17 @@ TEST(Matrix, OfAFloorWithLittleOnItIsOpenAsMuchAsIsLeft) {
   expect_rows_hold_one(scene, matrix, 1e-2);
 }
 
+// A closed box whose fronts look inward stands above the floor, which sees nothing but its backs and the sky.
+TEST(Matrix, OfAFloorUnderABoxTurnedInsideOutIsOpenBesideTheBox) {
+  PlainScene plain = open_box();
+  add(plain, "lid", {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}});
+  add(plain, "ground", square(4.0, -0.5));
+  const Scene scene = generate::build(plain);
+  const Matrix matrix = whole(scene, 1e-3);
+  EXPECT_GT(matrix.back.back().lower, 0.03);
+  expect_rows_hold_one(scene, matrix, 1e-2);
+}
+
 // A bent face sees through its own pieces, and so the sky behind them.
 TEST(Matrix, OfABentFaceItsOwnPiecesLeaveTheSkyOpen) {
   PlainScene plain;
@@ -273,6 +288,20 @@ TEST(Matrix, ASheetThatStandsOnASheetHidesTheSky) {
   to_sky.compute(0, [&](std::size_t, const ViewFactor& f) { sky = f; });
   const ViewFactor rest = compute(scene, floor, {}, {.factors = {.accuracy = 1e-4}, .open = true}).open.front();
   expect_holds(sky, rest.value, 1e-3);
+}
+
+// Without that, points would take several times as long.
+TEST(Matrix, OfWhatIsOpenItIsKnownHowFastItChanges) {
+  const SceneWithSky made = with_sky(read_scene(EXACTFF_DATA_DIR "/scenes/slats.obj"));
+  const view_factors::ExactScene scene(made.scene);
+  const view_factors::SeenParts seen(scene);
+  const view_factors::PreparedPatch lamp(scene, made.scene.select("lamp"), view_factors::Columns::kPatches);
+  const view_factors::PreparedPatch sky(scene, made.sky, view_factors::Columns::kSurroundings);
+  view_factors::PatchBounds bounds(scene, seen, lamp, sky);
+  const double unit = std::ldexp(1.0, static_cast<int>(scene.units.exponent + scene.units.shift));
+  const double slope = bounds.about(0, lamp.parts[0].corners[0].at).change / unit;
+  EXPECT_LT(slope, 10.0) << "nine slats, 1.3 m away";
+  EXPECT_GT(slope, 0.1);
 }
 
 // A patch of two plates, one in the box, one beside it.
