@@ -5,7 +5,8 @@ namespace exactff::view_factors {
 
 enum class Columns {
   kPatches,
-  // Each is a patch of turned copies of faces. Where closed surfaces hide these, that is proved first (enclosures.h).
+  // Each is a patch of copies of faces, turned or not. Where closed surfaces hide these, that is proved first
+  // (enclosures.h).
   kBacks,
   // Each is a patch through which something is seen that lies beyond.
   kWindows,

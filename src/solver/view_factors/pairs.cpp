@@ -116,7 +116,7 @@ double Pairs::unhidden(std::size_t row, std::size_t column) const {
   double sum = 0.0;
   for (const Stratum& stratum : strata.strata) {
     const Tile& tile = strata.tiles[stratum.begin];
-    const Vec3 middle = sides_of(from.parts[tile.part], tile).at(middle_of(tile));
+    const Vec3 middle = reach_of(from.parts[tile.part], tile).middle;
     sum += stratum.area / strata.area * bounds.range_at(tile.part, middle);
   }
   return std::min(1.0, sum);
