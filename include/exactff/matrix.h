@@ -1,8 +1,9 @@
 // A matrix of view factors with what its rows see besides patches, and its files for other programs.
 //
-// A ray from a point of a patch meets the front of a face, the back of one, or nothing. So the factors of a row to all
-// patches, the factor to the backs and the factor to what is open add up to 1, unless faces are transparent or fronts
-// of different patches overlap in one plane. Each of the three is computed by itself.
+// A ray from a point of a patch meets the front of a face, the back of one, or nothing; from a part that is buried
+// (scene.h), there is none. So the factors of a row to all patches, the factor to the backs, the factor to what is open
+// and the share that is buried add up to 1, unless faces are transparent or fronts of different patches overlap in one
+// plane. Each of the four is computed by itself.
 #pragma once
 
 #include <cstddef>
@@ -44,6 +45,9 @@ struct Matrix {
   // Empty if not asked for. As strong as their claims. Where a front lies on a back, seen from the same side, the
   // front counts. The area_to of `open` means nothing.
   std::vector<ViewFactor> back, open;
+  // For each row: the share of its area that is buried (scene.h), proved. Empty if nothing is, in all rows. Its area_to
+  // means nothing.
+  std::vector<ViewFactor> buried;
 };
 
 // All factors between two lists of patches, each as view_factor gives it alone. Throws what view_factor throws; and
@@ -51,7 +55,8 @@ struct Matrix {
 [[nodiscard]] Matrix compute(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
                              const Options& options = {}, const Hooks& hooks = {});
 
-// The sum of each row with its back and open, rounded outward: an enclosure as strong as the row's weakest claim.
+// The sum of each row with its back, open and buried, rounded outward: an enclosure as strong as the row's weakest
+// claim.
 struct Sum {
   double lower = 0.0;
   double upper = 0.0;
@@ -92,6 +97,7 @@ struct Reciprocity {
 // Names of the additional columns.
 inline constexpr std::string_view kBack = "(back)";
 inline constexpr std::string_view kOpen = "(open)";
+inline constexpr std::string_view kBuried = "(buried)";
 
 // A row for each entry: from,to,factor,lower,upper,claim,way,accurate,area_from,area_to,cells,event_cells,limit.
 // Doubles read back to the same bits.
@@ -100,12 +106,12 @@ inline constexpr std::string_view kOpen = "(open)";
 // A matrix as its CSV file has it: with names instead of patches, otherwise to the same bits.
 struct Table {
   std::string file;
-  std::vector<std::string> header;     // the comment lines, without their '#'
-  std::vector<std::string> from, to;   // `to` without the additional columns
-  std::vector<ViewFactor> entries;     // row by row
-  std::vector<ViewFactor> back, open;  // for each row; empty if the file does not have them
-  std::vector<std::uint32_t> lines;    // of all entries, in the order of the file: row by row, with back and open
-  bool has_old_claims = false;         // "topology-proved" or "statistical", which are read as `estimated`
+  std::vector<std::string> header;             // the comment lines, without their '#'
+  std::vector<std::string> from, to;           // `to` without the additional columns
+  std::vector<ViewFactor> entries;             // row by row
+  std::vector<ViewFactor> back, open, buried;  // for each row; empty if the file does not have them
+  std::vector<std::uint32_t> lines;  // of all entries, in the order of the file: row by row, with back and open
+  bool has_old_claims = false;       // "topology-proved" or "statistical", which are read as `estimated`
 };
 // Reads what csv_text wrote, also before `way` and `limit` were columns, and drafts: until 2026-11-26 there was a way
 // `views`, means of whole views, which is read as `points`. Throws one InputError with file:line for every problem.

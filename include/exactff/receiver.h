@@ -68,6 +68,13 @@ struct Receiver {
   std::optional<GridCell> cell = std::nullopt;  // of a receiver that grid_receivers made
 };
 
+// The face of a solid that stands on the receiver's own face (Scene, "Buried"). The receiver must look from the front
+// of its own face, and its projection along the face's normal must lie in the open interior of what is buried. Such a
+// receiver sees nothing: all form factors are 0. Exact.
+[[nodiscard]] std::optional<FaceId> buried_under(const Scene& scene, const Receiver& receiver);
+// Whether any part of any face is buried.
+[[nodiscard]] bool some_is_buried(const Scene& scene);
+
 // The own faces that a text names: "NAME" (a patch of one face), "NAME:k", or "NAME:1+2" for several faces of a patch.
 // A patch whose name is exactly the text has priority. Throws InputError.
 [[nodiscard]] std::vector<FaceId> own_faces_named(const Scene& scene, std::string_view name);

@@ -105,6 +105,14 @@ struct Selection {
   friend bool operator==(const Selection& a, const Selection& b) { return a.patch == b.patch && a.face == b.face; }
 };
 
+// Buried. Where solids touch, parts of faces neither send nor receive light: the floor under a box, the bottom of the
+// box on the floor of a closed room, both sides of the contact of two boxes. A *solid* is a closed surface; at an edge,
+// it goes on to the face that ends the wedge behind a face, so boxes that share edges are two solids. Where a face of a
+// solid lies on a face that is not its own, in the same plane and with the opposite front, that face is buried. A solid
+// that encloses volume behind its fronts, as a box does, buries parts of any face; a room, with its fronts inside, only
+// those of other solids' faces. Not buried are the two sides of a sheet, or of a lamp without thickness, the party wall
+// of two rooms, anything on a floor that is no part of a closed surface, and what touches transparent faces. Decided
+// exactly; the whole rule is in scene/contacts.h.
 class Scene {
  public:
   Scene(Scene&&) noexcept;

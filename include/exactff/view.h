@@ -4,8 +4,9 @@
 // What is seen in a direction above the horizon is the nearest face whose plane does not hold x and that is not one of
 // the receiver's own faces. Transparent faces are left out. Of faces in one plane a front is seen before a back, and of
 // several fronts the one with the lowest index. A front counts for its patch, a back for `back`, and a direction that
-// meets nothing for `open`. The shares of all fronts, `back` and `open` add up to 1. Except for the choice among
-// several fronts, nothing depends on the order of the faces.
+// meets nothing for `open`. The shares of all fronts, `back`, `open` and `buried` add up to 1. Except for the choice
+// among several fronts, nothing depends on the order of the faces. The part of a front that is buried (scene.h) is not
+// seen: there, the back that buries it is.
 //
 // The form factor of a patch (exact.h) is its share, except where a front of another patch with a lower index lies in
 // one plane with it and overlaps it: such a patch is stacked, and keeps its full form factor.
@@ -73,10 +74,12 @@ struct ViewRecord {
 };
 
 struct WholeView {
-  std::vector<SeenPatch> patches;  // every patch, or face, with a share or a form factor above 0, by index
-  ViewShare back;                  // backs of faces
-  ViewShare open;                  // nothing
-  std::vector<ViewArc> arcs;       // on request
+  std::vector<SeenPatch> patches;      // every patch, or face, with a share or a form factor above 0, by index
+  ViewShare back;                      // backs of faces
+  ViewShare open;                      // nothing
+  ViewShare buried;                    // 1 if the receiver is buried (scene.h), so that it sees nothing; else 0
+  std::optional<FaceId> buried_under;  // the face that lies on it
+  std::vector<ViewArc> arcs;           // on request
   ViewRecord record;
 };
 

@@ -89,6 +89,7 @@ void for_each_entry(const Scene& scene, const matrix::Matrix& matrix, const Visi
     for (std::size_t j = 0; j < all.to.size(); ++j) visit(i, shown_name(scene, all.to[j]), all.at(i, j));
     if (!matrix.back.empty()) visit(i, std::string(matrix::kBack), matrix.back[i]);
     if (!matrix.open.empty()) visit(i, std::string(matrix::kOpen), matrix.open[i]);
+    if (!matrix.buried.empty()) visit(i, std::string(matrix::kBuried), matrix.buried[i]);
   }
 }
 
@@ -113,12 +114,14 @@ void print_table(const Scene& scene, const matrix::Matrix& matrix) {
   for (std::size_t j = 0; j < columns; ++j) table.add_column(shown_name(scene, all.to[j]));
   if (!matrix.back.empty()) table.add_column(std::string(matrix::kBack));
   if (!matrix.open.empty()) table.add_column(std::string(matrix::kOpen));
+  if (!matrix.buried.empty()) table.add_column(std::string(matrix::kBuried));
   table.add_column("sum of row");
   for (std::size_t i = 0; i < rows; ++i) {
     std::vector<std::string> cells{shown_name(scene, all.from[i])};
     for (std::size_t j = 0; j < columns; ++j) cells.push_back(factor_text(all.at(i, j)));
     if (!matrix.back.empty()) cells.push_back(factor_text(matrix.back[i]));
     if (!matrix.open.empty()) cells.push_back(factor_text(matrix.open[i]));
+    if (!matrix.buried.empty()) cells.push_back(factor_text(matrix.buried[i]));
     cells.push_back(text::interval(sums[i].lower, sums[i].upper));
     table.add_row(std::move(cells));
   }

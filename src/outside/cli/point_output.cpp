@@ -218,6 +218,10 @@ std::optional<std::string> sum_text(const Enclosure& sum, int digits) {
 void print_point_table(const PointArguments& args, const Scene& scene, const PointResult& point) {
   std::cout << "receiver " << vec_text(point.receiver.point) << ", normal " << vec_text(point.receiver.normal);
   if (!point.receiver.on.empty()) std::cout << ", on " << text::printable(scene.name_of(point.receiver.on));
+  if (const std::optional<FaceId> cover = buried_under(scene, point.receiver)) {
+    std::cout << "\nburied under " << shown_name(scene, *cover)
+              << ": a closed solid stands on the receiver's face there, so it sees nothing";
+  }
   std::cout << "\n\n";
   const bool blocks = !point.every_patch || args.explain || args.exact_fraction || args.gradient;
   for (const PointTerm& one : point.sources) {
@@ -369,6 +373,9 @@ void print_point_json(const PointArguments& args, const Scene& scene, const Poin
                                    {"normal", numbers_json(point.receiver.normal)},
                                    {"reflectance", numbers_json(point.reflectance)}}}};
   if (!point.receiver.on.empty()) json["receiver"]["on"] = scene.name_of(point.receiver.on);
+  if (const std::optional<FaceId> cover = buried_under(scene, point.receiver)) {
+    json["receiver"]["buried_under"] = scene.name_of(*cover);
+  }
   json["sources"] = nlohmann::ordered_json::array();
   for (const PointTerm& one : point.sources) json["sources"].push_back(source_json(args, scene, one));
   json["sum"] = sum_json(point.sum);

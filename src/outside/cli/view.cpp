@@ -33,6 +33,7 @@ namespace {
 constexpr int kMostViewDigits = 10000;
 constexpr const char* kBack = "(back)";
 constexpr const char* kOpen = "(open)";
+constexpr const char* kBuried = "(buried)";
 
 struct ViewArguments {
   flags::SceneArguments scene;
@@ -64,6 +65,7 @@ void for_each_share(const Scene& scene, const WholeView& seen, const Visit& visi
   for (const SeenPatch& patch : seen.patches) visit(scene.patch(patch.patch).name, patch.share, &patch);
   visit(kBack, seen.back, static_cast<const SeenPatch*>(nullptr));
   visit(kOpen, seen.open, static_cast<const SeenPatch*>(nullptr));
+  if (seen.buried_under) visit(kBuried, seen.buried, static_cast<const SeenPatch*>(nullptr));
 }
 
 // What is seen: the lines add up to 1.
@@ -110,7 +112,13 @@ void print_table(const ViewArguments& args, const Scene& scene, const Receiver& 
   for (const SeenPatch* patch : by_size) add(scene.patch(patch->patch).name, patch->share, patch);
   add(kBack, seen.back, nullptr);
   add(kOpen, seen.open, nullptr);
+  if (seen.buried_under) add(kBuried, seen.buried, nullptr);
   table.print(std::cout);
+  if (seen.buried_under) {
+    std::cout << "\nburied under " << text::printable(scene.name_of(*seen.buried_under))
+              << ": a closed solid stands on the receiver's face there, so it sees nothing\n";
+    return;
+  }
   Enclosure fronts;
   for (const SeenPatch& patch : seen.patches) fronts += patch.share.enclosure;
   std::cout << "\nfronts  "
@@ -185,6 +193,10 @@ void print_json(const ViewArguments& args, const Scene& scene, const Receiver& r
   }
   json["back"] = share_json(args, seen.back);
   json["open"] = share_json(args, seen.open);
+  if (seen.buried_under) {
+    json["buried"] = share_json(args, seen.buried);
+    json["buried_under"] = scene.name_of(*seen.buried_under);
+  }
   const ViewRecord& work = seen.record;
   json["work"] = {{"outlines", work.outlines},   {"windows", work.windows}, {"pairs", work.pairs},
                   {"undecided", work.undecided}, {"pierced", work.pierced}, {"arcs", work.arcs}};
@@ -276,8 +288,9 @@ void add_output_flags(CLI::App& app, ViewArguments& args) {
       ->check(CLI::Range(32, 1 << 24))
       ->capture_default_str();
   auto* plain = app.add_flag("--plain", args.plain,
-                             "Print one line per patch that is seen: name, tab, share of the view; then (back) and "
-                             "(open). The lines add up to 1. The share is the form factor, unless patches are stacked");
+                             "Print one line per patch that is seen: name, tab, share of the view; then (back), "
+                             "(open) and, of a buried receiver, (buried). The lines add up to 1. The share is the form "
+                             "factor, unless patches are stacked");
   auto* json = app.add_flag("--json", args.json, "Print JSON");
   auto* csv = app.add_flag("--csv", args.csv, "Print CSV");
   plain->excludes(json)->excludes(csv);
@@ -313,7 +326,8 @@ Command add_view(CLI::App& app) {
       "What is seen in a direction is the nearest face that is not the receiver's own; of faces in one plane a front\n"
       "before a back, and of several fronts the first in the file. The others are stacked: each keeps its full form\n"
       "factor. Fronts count for their patch, backs for (back), and directions that meet nothing for (open). Together\n"
-      "they are exactly 1. Patches that are not listed have a form factor of exactly 0; --plain leaves out stacked "
+      "they are exactly 1. A receiver on a part of a face that a closed solid stands on sees nothing: (buried) is 1.\n"
+      " Patches that are not listed have a form factor of exactly 0; --plain leaves out stacked "
       "ones\n"
       "that are not seen. The exit code is 3 if a value is not certified within --precision-cap.\n"
       "\n"

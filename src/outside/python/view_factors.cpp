@@ -42,7 +42,7 @@ py::tuple to_tuple(const matrix::Reciprocity& reciprocity) {
   return py::make_tuple(reciprocity.pairs, worst, apart);
 }
 
-// Entries row by row, backs, what is open, sums of rows (lower, upper), reasons against 1, reciprocity.
+// Entries row by row, backs, what is open, what is buried, sums of rows (lower, upper), reasons against 1, reciprocity.
 py::tuple view_factor_matrix_of(const SharedScene& scene, const std::vector<std::string>& from,
                                 const std::vector<std::string>& to, double accuracy, std::size_t budget, bool certify,
                                 bool backs, bool open, bool both_directions, int threads, const py::object& progress) {
@@ -66,8 +66,8 @@ py::tuple view_factor_matrix_of(const SharedScene& scene, const std::vector<std:
   });
   py::list sums;
   for (const matrix::Sum& sum : row_sums(made)) sums.append(py::make_tuple(sum.lower, sum.upper));
-  return py::make_tuple(to_list(made.factors.entries), to_list(made.back), to_list(made.open), sums, reasons,
-                        to_tuple(reciprocity));
+  return py::make_tuple(to_list(made.factors.entries), to_list(made.back), to_list(made.open), to_list(made.buried),
+                        sums, reasons, to_tuple(reciprocity));
 }
 
 std::shared_ptr<SharedScene> with_two_sided_of(const SharedScene& scene, const std::vector<std::string>& names) {
@@ -79,7 +79,8 @@ py::tuple to_tuple(const ViewShare& share) {
   return py::make_tuple(share.value, share.lower, share.upper, static_cast<int>(share.status));
 }
 
-// For each patch or face that is seen: name, form factor, share, stacked. Then back and open.
+// For each patch or face that is seen: name, form factor, share, stacked. Then back, open, and the name of the face
+// that buries the receiver.
 py::tuple view_of(const SharedScene& scene, const std::array<double, 3>& point, const std::array<double, 3>& normal,
                   const std::vector<std::uint32_t>& on, bool faces, int digits, int precision_cap) {
   const Scene& in = scene.scene();
@@ -93,7 +94,9 @@ py::tuple view_of(const SharedScene& scene, const std::array<double, 3>& point, 
     rows.append(py::make_tuple(in.name_of(Selection{patch.patch, patch.face}), to_tuple(patch.form_factor),
                                to_tuple(patch.share), patch.stacked));
   }
-  return py::make_tuple(rows, to_tuple(seen.back), to_tuple(seen.open));
+  const py::object buried =
+      seen.buried_under ? py::object(py::str(in.name_of(*seen.buried_under))) : py::object(py::none());
+  return py::make_tuple(rows, to_tuple(seen.back), to_tuple(seen.open), buried);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 // The columns to compare: all patches, and what else there is on both sides.
 struct Columns {
-  bool back = false, open = false;
+  bool back = false, open = false, buried = false;
 };
 
 TruthRow truth_row(const std::string& from, std::size_t column, const ViewFactor& f, std::uint32_t line) {
@@ -63,14 +63,16 @@ Truth truth_of(const matrix::Table& table, const Columns& columns) {
   NameList names;
   for (const std::string& to : table.to) (void)names.number_of(to);
   const std::size_t patches = table.to.size();
-  const std::size_t width = patches + (table.back.empty() ? 0 : 1) + (table.open.empty() ? 0 : 1);
+  const std::size_t open = patches + (table.back.empty() ? 0 : 1), buried = open + (table.open.empty() ? 0 : 1);
+  const std::size_t width = buried + (table.buried.empty() ? 0 : 1);
   for (std::size_t i = 0; i < table.from.size(); ++i) {
     const auto add = [&](const std::string& to, const ViewFactor& f, std::size_t place) {
       truth.rows.push_back(truth_row(table.from[i], names.number_of(to), f, table.lines[i * width + place]));
     };
     for (std::size_t j = 0; j < patches; ++j) add(table.to[j], table.entries[i * patches + j], j);
     if (columns.back) add(std::string(matrix::kBack), table.back[i], patches);
-    if (columns.open) add(std::string(matrix::kOpen), table.open[i], width - 1);
+    if (columns.open) add(std::string(matrix::kOpen), table.open[i], open);
+    if (columns.buried) add(std::string(matrix::kBuried), table.buried[i], buried);
   }
   truth.sources = names.take();
   require_single_entries(truth);
@@ -99,8 +101,9 @@ void compare_by_names(const matrix::Table& table, const Candidate& candidate, bo
     return std::ranges::find(candidate.sources, name) != candidate.sources.end();
   };
   result.candidate_file = candidate.file;
-  result.truth = truth_of(
-      table, {.back = !table.back.empty() && has(matrix::kBack), .open = !table.open.empty() && has(matrix::kOpen)});
+  result.truth = truth_of(table, {.back = !table.back.empty() && has(matrix::kBack),
+                                  .open = !table.open.empty() && has(matrix::kOpen),
+                                  .buried = !table.buried.empty() && has(matrix::kBuried)});
   MatchOptions options;
   options.partial = partial;
   result.values = match(result.truth, candidate, options);

@@ -49,12 +49,14 @@ bool has_bent_rows(const Scene& scene, const std::vector<Selection>& from) {
   });
 }
 
-// By its number, row by row, with back and open.
+// By its number, row by row, with back, open and buried.
 ViewFactor& entry_of(Matrix& matrix, std::size_t entry) {
   const std::size_t patches = matrix.factors.to.size();
-  const std::size_t width = patches + (matrix.back.empty() ? 0 : 1) + (matrix.open.empty() ? 0 : 1);
+  const std::size_t width =
+      patches + (matrix.back.empty() ? 0 : 1) + (matrix.open.empty() ? 0 : 1) + (matrix.buried.empty() ? 0 : 1);
   const std::size_t row = entry / width, column = entry % width;
   if (column < patches) return matrix.factors.entries[row * patches + column];
+  if (!matrix.buried.empty() && column + 1 == width) return matrix.buried[row];
   return (matrix.back.empty() || column > patches ? matrix.open : matrix.back)[row];
 }
 
@@ -66,10 +68,11 @@ Matrix compute(const Scene& scene, std::span<const Selection> from, std::span<co
                const Options& options, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   const EntryJobs jobs(scene, from, to, options);
-  Matrix result{{{from.begin(), from.end()}, {to.begin(), to.end()}, {}}, {}, {}};
+  Matrix result{{{from.begin(), from.end()}, {to.begin(), to.end()}, {}}, {}, {}, {}};
   result.factors.entries.resize(from.size() * to.size());
   if (options.backs) result.back.resize(from.size());
   if (options.open) result.open.resize(from.size());
+  if (jobs.has_buried()) result.buried.resize(from.size());
   const int threads = options.threads > 0 ? options.threads : files::usable_threads();
   files::parallel_for(jobs.count(), threads, "view factors", hooks, [&](std::size_t job) {
     jobs.compute(job, [&](std::size_t entry, const ViewFactor& f) { entry_of(result, entry) = f; });
@@ -88,6 +91,7 @@ std::vector<Sum> row_sums(const Matrix& matrix) {
     for (std::size_t j = 0; j < matrix.factors.to.size(); ++j) add(matrix.factors.at(i, j));
     if (!matrix.back.empty()) add(matrix.back[i]);
     if (!matrix.open.empty()) add(matrix.open[i]);
+    if (!matrix.buried.empty()) add(matrix.buried[i]);
   }
   return sums;
 }

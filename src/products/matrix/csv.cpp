@@ -35,6 +35,7 @@ std::string csv_comments(const Scene& scene, std::span<const Selection> from, st
   if (!options.sample_crowds) text += ", no entry by points";
   if (surroundings.back) text += ", " + std::string(kBack);
   if (surroundings.open) text += ", " + std::string(kOpen);
+  if (surroundings.buried) text += ", " + std::string(kBuried);
   return text + '\n';
 }
 
@@ -47,7 +48,8 @@ void add_csv_row(std::string& text, const std::string& from, std::string_view to
 
 std::string csv_text(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options) {
   const Factors& all = matrix.factors;
-  std::string text = csv_comments(scene, all.from, all.to, options, {!matrix.back.empty(), !matrix.open.empty()});
+  std::string text = csv_comments(scene, all.from, all.to, options,
+                                  {!matrix.back.empty(), !matrix.open.empty(), !matrix.buried.empty()});
   text += std::string(kColumns) + '\n';
   for (std::size_t i = 0; i < all.from.size(); ++i) {
     const std::string from = scene.name_of(all.from[i]);
@@ -56,6 +58,7 @@ std::string csv_text(const Scene& scene, const Matrix& matrix, const ViewFactorO
     }
     if (!matrix.back.empty()) add_csv_row(text, from, kBack, matrix.back[i], matrix.back[i].area_to);
     if (!matrix.open.empty()) add_csv_row(text, from, kOpen, matrix.open[i], std::nullopt);
+    if (!matrix.buried.empty()) add_csv_row(text, from, kBuried, matrix.buried[i], std::nullopt);
   }
   return text;
 }

@@ -15,7 +15,7 @@ inline constexpr std::string_view kColumns =
 
 // The columns besides patches.
 struct Surroundings {
-  bool back = false, open = false;
+  bool back = false, open = false, buried = false;
 };
 
 // Comment lines with everything that the entries depend on, without the line of column names.
@@ -23,7 +23,7 @@ struct Surroundings {
                                        std::span<const Selection> to, const ViewFactorOptions& options,
                                        Surroundings surroundings);
 
-// `area_to`: nothing for what is open.
+// `area_to`: nothing for what is open or buried.
 void add_csv_row(std::string& text, const std::string& from, std::string_view to, const ViewFactor& f,
                  std::optional<double> area_to);
 

@@ -1,5 +1,6 @@
 #include "matrix/entry_jobs.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "kernel/float_environment.h"
@@ -31,6 +32,24 @@ class AtWork {
 };
 thread_local const AtWork* AtWork::of_thread = nullptr;
 
+bool some_is_buried(const view_factors::Pairs& pairs, std::size_t rows) {
+  for (std::size_t row = 0; row < rows; ++row) {
+    if (pairs.exposed_share(row).centre != 1.0 || pairs.exposed_share(row).radius != 0.0) return true;
+  }
+  return false;
+}
+
+ViewFactor buried_share(const kernel::Disc& exposed) {
+  if (exposed.radius == 0.0 && (exposed.centre == 1.0 || exposed.centre == 0.0)) {
+    const double buried = 1.0 - exposed.centre;
+    return {
+        .value = buried, .lower = buried, .upper = buried, .claim = buried == 0.0 ? Claim::kZero : Claim::kCertified};
+  }
+  const kernel::Disc share = kernel::Disc{.centre = 1.0} - exposed;
+  const double lower = std::clamp(lower_end(share), 0.0, 1.0), upper = std::clamp(upper_end(share), 0.0, 1.0);
+  return {.value = std::clamp(share.centre, lower, upper), .lower = lower, .upper = upper, .claim = Claim::kCertified};
+}
+
 }  // namespace
 
 EntryJobs::EntryJobs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
@@ -39,19 +58,18 @@ EntryJobs::EntryJobs(const Scene& scene, std::span<const Selection> from, std::s
       from_(from.begin(), from.end()),
       to_(to.begin(), to.end()),
       pairs_(scene, from, to, options.factors),
-      width_(to.size() + (options.backs ? 1 : 0) + (options.open ? 1 : 0)) {
+      has_buried_(some_is_buried(pairs_, from.size())),
+      width_(to.size() + (options.backs ? 1 : 0) + (options.open ? 1 : 0) + (has_buried_ ? 1 : 0)) {
   if (from.empty()) return;
   if (options.backs) to_backs_.emplace(scene, from, options.factors);
   if (options.open) to_sky_.emplace(scene, from, options.factors, pairs_);
 }
 
-std::size_t EntryJobs::count() const {
-  return pairs_.count() + (to_backs_ ? from_.size() : 0) + (to_sky_ ? from_.size() : 0);
-}
+std::size_t EntryJobs::count() const { return pairs_.count() + (width_ - to_.size()) * from_.size(); }
 
 std::vector<std::size_t> EntryJobs::entries_of(std::size_t job) const {
   if (job >= pairs_.count()) {
-    const std::size_t further = job - pairs_.count();  // back of every row, then open
+    const std::size_t further = job - pairs_.count();  // back of every row, then open, then buried
     return {further % from_.size() * width_ + to_.size() + further / from_.size()};
   }
   std::vector<std::size_t> entries = pairs_.entries_of(job);
@@ -68,10 +86,27 @@ void EntryJobs::compute(std::size_t job, const std::function<void(std::size_t, c
     pairs_.compute(job, [&](std::size_t, const ViewFactor& f) { take(entries[next++], f); });
     return;
   }
-  const std::size_t further = job - pairs_.count(), row = further % from_.size();
-  ViewFactor factor = to_backs_ && further < from_.size() ? to_backs_->of_row(row) : to_sky_->of_row(row);
+  const std::size_t row = entries.front() / width_;
+  ViewFactor factor = computed(kind_of(entries.front() % width_), row);
   factor.area_from = pairs_.area_from(row);
   take(entries.front(), factor);
+}
+
+ViewFactor EntryJobs::computed(Column column, std::size_t row) const {
+  switch (column) {
+    case Column::kBack:
+      return to_backs_->of_row(row);
+    case Column::kOpen:
+      return to_sky_->of_row(row);
+    default:
+      return buried_share(pairs_.exposed_share(row));
+  }
+}
+
+EntryJobs::Column EntryJobs::kind_of(std::size_t column) const {
+  if (column < to_.size()) return Column::kPatch;
+  if (has_buried_ && column + 1 == width_) return Column::kBuried;
+  return to_backs_ && column == to_.size() ? Column::kBack : Column::kOpen;
 }
 
 std::string EntryJobs::slow_of_thread(double seconds) {
@@ -80,8 +115,9 @@ std::string EntryJobs::slow_of_thread(double seconds) {
 }
 
 std::string EntryJobs::name_of_column(std::size_t column) const {
-  if (column < to_.size()) return scene_.name_of(to_[column]);
-  return std::string(to_backs_ && column == to_.size() ? kBack : kOpen);
+  const Column kind = kind_of(column);
+  if (kind == Column::kPatch) return scene_.name_of(to_[column]);
+  return std::string(kind == Column::kBack ? kBack : kind == Column::kOpen ? kOpen : kBuried);
 }
 
 std::string EntryJobs::name(std::size_t job) const {
@@ -92,9 +128,9 @@ std::string EntryJobs::name(std::size_t job) const {
 
 void EntryJobs::append_csv(std::string& text, std::size_t entry, const ViewFactor& f) const {
   const std::size_t column = entry % width_;
-  const bool is_open = to_sky_ && column + 1 == width_;
+  const bool has_area = kind_of(column) == Column::kPatch || kind_of(column) == Column::kBack;
   add_csv_row(text, scene_.name_of(from_[entry / width_]), name_of_column(column), f,
-              is_open ? std::nullopt : std::optional(f.area_to));
+              has_area ? std::optional(f.area_to) : std::nullopt);
 }
 
 }  // namespace exactff::matrix

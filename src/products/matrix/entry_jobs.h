@@ -1,4 +1,4 @@
-// A matrix, job by job. Entries are numbered row by row, as in the CSV file: to patches, then (back), then (open).
+// A matrix, job by job. Entries are numbered row by row, as in the CSV file: to patches, then (back), (open), (buried).
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,8 @@ class EntryJobs {
   EntryJobs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to, const Options& options);
 
   [[nodiscard]] std::size_t count() const;
-  [[nodiscard]] std::size_t width() const { return width_; }  // entries of a row
+  [[nodiscard]] std::size_t width() const { return width_; }     // entries of a row
+  [[nodiscard]] bool has_buried() const { return has_buried_; }  // a part of some row is
   // The entries that a job gives.
   [[nodiscard]] std::vector<std::size_t> entries_of(std::size_t job) const;
   // In the order of entries_of. From any thread.
@@ -34,11 +35,15 @@ class EntryJobs {
   void append_csv(std::string& text, std::size_t entry, const ViewFactor& factor) const;
 
  private:
+  enum class Column { kPatch, kBack, kOpen, kBuried };
+  [[nodiscard]] Column kind_of(std::size_t column) const;
   [[nodiscard]] std::string name_of_column(std::size_t column) const;
+  [[nodiscard]] ViewFactor computed(Column column, std::size_t row) const;
 
   const Scene& scene_;
   const std::vector<Selection> from_, to_;
   view_factors::Pairs pairs_;
+  bool has_buried_;
   std::size_t width_;
   std::optional<BackFactors> to_backs_;
   std::optional<OpenFactors> to_sky_;

@@ -68,6 +68,7 @@ void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::
   file.add("area_to", area_to);
   add_column(file, "back", matrix.back);
   add_column(file, "open", matrix.open);
+  add_column(file, "buried", matrix.buried);
   file.commit();
 }
 

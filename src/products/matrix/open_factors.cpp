@@ -13,16 +13,22 @@ namespace {
 constexpr std::size_t kMostPieces = 4096;  // of more, the rest is hardly known soon
 constexpr double kLittle = 0.45;           // of a view that may be the faces', by a rough bound
 
-ViewFactor rest_of(const ViewFactor& faces) {
+// Of a row of which this share of the area is not buried, and sees this of the faces.
+ViewFactor rest_of(const ViewFactor& faces, const kernel::Disc& exposed) {
   ViewFactor rest = faces;
   rest.area_to = 0.0;
-  rest.value = 1.0 - faces.value;
-  rest.lower = std::max(0.0, kernel::below(1.0 - faces.upper));
-  rest.upper = std::min(1.0, kernel::above(1.0 - faces.lower));
+  const bool is_whole = exposed.centre == 1.0 && exposed.radius == 0.0;
+  const double most = is_whole ? 1.0 : std::min(1.0, upper_end(exposed));
+  const double least = is_whole ? 1.0 : std::max(0.0, lower_end(exposed));
   if (faces.claim == Claim::kZero) {
     rest.claim = Claim::kCertified;
-    rest.lower = rest.upper = 1.0;
+    rest.lower = least;
+    rest.upper = most;
+  } else {
+    rest.lower = std::max(0.0, kernel::below(least - faces.upper));
+    rest.upper = std::min(1.0, kernel::above(most - faces.lower));
   }
+  rest.value = std::clamp(exposed.centre - faces.value, rest.lower, rest.upper);
   return rest;
 }
 
@@ -95,7 +101,7 @@ ViewFactor OpenFactors::of_row(std::size_t row) const {
     }
   }
   if (may_be_rest(row) && sides().unhidden(row) < kLittle) {
-    const ViewFactor rest = rest_of(sides().of_row(row));
+    const ViewFactor rest = rest_of(sides().of_row(row), pairs_.exposed_share(row));
     if (rest.accurate) return rest;
   }
   return factor_of(to_sky_, row);

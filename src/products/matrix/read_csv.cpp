@@ -128,6 +128,7 @@ class TableReader {
       patches_ -= there ? 1 : 0;
       return there;
     };
+    has_buried_ = take_off(kBuried);
     has_open_ = take_off(kOpen);
     has_back_ = take_off(kBack);
     for (std::size_t j = 0; j < patches_; ++j) table_.to.push_back(rows_[j].to);
@@ -145,9 +146,15 @@ class TableReader {
         return;
       }
       const Row& row = rows_[first + j];
-      (j < patches_ ? table_.entries : j == patches_ && has_back_ ? table_.back : table_.open).push_back(row.factor);
+      entries_of(j).push_back(row.factor);
       table_.lines.push_back(row.line);
     }
+  }
+
+  std::vector<ViewFactor>& entries_of(std::size_t column) {
+    if (column < patches_) return table_.entries;
+    if (has_buried_ && column + 1 == width_) return table_.buried;
+    return column == patches_ && has_back_ ? table_.back : table_.open;
   }
 
   text::CsvTable csv_;
@@ -158,7 +165,7 @@ class TableReader {
   std::array<std::size_t, kNumbers.size()> numbers_{};
   std::size_t width_ = 1;    // entries of a row
   std::size_t patches_ = 1;  // those to patches
-  bool has_back_ = false, has_open_ = false;
+  bool has_back_ = false, has_open_ = false, has_buried_ = false;
 };
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace exactff::matrix {
 
 double area_of_row(const Matrix& matrix, std::size_t row) {
   if (!matrix.factors.to.empty()) return matrix.factors.at(row, 0).area_from;
-  return (matrix.open.empty() ? matrix.back : matrix.open)[row].area_from;
+  return (!matrix.back.empty() ? matrix.back : !matrix.open.empty() ? matrix.open : matrix.buried)[row].area_from;
 }
 
 bool has_estimates(const Matrix& matrix, std::size_t row) {

@@ -10,7 +10,7 @@
 
 namespace exactff::matrix {
 
-// The area of a row's patch. Requires a column, or back or open.
+// The area of a row's patch. Requires a column, or back, open or buried.
 [[nodiscard]] double area_of_row(const Matrix& matrix, std::size_t row);
 
 // row_sums(), but not above 1 where that is proved: a ray meets the front of one patch, a back or nothing first, so the

@@ -72,7 +72,7 @@ Rows::Rows(Request request)
 
 std::string Rows::comments() const {
   return csv_comments(*request_.scene, request_.from, request_.to, request_.options.factors,
-                      {request_.options.backs, request_.options.open});
+                      {request_.options.backs, request_.options.open, entries_.has_buried()});
 }
 
 std::string Rows::csv_head() const { return comments() + std::string(kColumns) + '\n'; }

@@ -10,14 +10,14 @@
 
 #include "kernel/plane_through.h"
 #include "kernel/poll.h"
-#include "matrix/coplanar.h"
 #include "scene/closed_surfaces.h"
+#include "scene/coplanar.h"
 #include "scene/scene_copy.h"
 #include "text/refuse.h"
 #include "view_factors/pairs.h"
 #include "visibility/source_plane.h"
 
-namespace exactff::matrix {
+namespace exactff {
 namespace {
 
 std::vector<std::uint32_t> corners_of(const Scene& scene, const Piece& piece) {
@@ -332,4 +332,4 @@ bool have_fronts_in_common(const Scene& scene) {
   return false;
 }
 
-}  // namespace exactff::matrix
+}  // namespace exactff

@@ -120,7 +120,10 @@ Matrix read(const Request& request, const fs::path& file) {
     text::refuse(file, "holds other rows or columns than those that are asked for",
                  "its entries would be taken for others", "compute the matrix again, or name another file");
   }
-  return {{request.from, request.to, std::move(table.entries)}, std::move(table.back), std::move(table.open)};
+  return {{request.from, request.to, std::move(table.entries)},
+          std::move(table.back),
+          std::move(table.open),
+          std::move(table.buried)};
 }
 
 }  // namespace exactff::matrix

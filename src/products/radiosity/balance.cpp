@@ -60,6 +60,10 @@ Losses losses_of(const Scene& scene, const matrix::Matrix& matrix, bool adds_up)
       knows_all ? matrix::ProvedZeros{} : matrix::proved_zeros(scene, matrix.factors.from);
   Losses losses;
   for (std::size_t i = 0; i < matrix.factors.from.size(); ++i) {
+    if (matrix.factors.at(i, 0).area_from == 0.0) {  // buried as a whole
+      for (auto* of : {&losses.back, &losses.open, &losses.lost}) of->emplace_back();
+      continue;
+    }
     const auto share = [i](const std::vector<ViewFactor>& computed, const std::vector<bool>& is_zero) {
       return !computed.empty() ? interval(computed[i]) : is_zero[i] ? Sum{} : kAnyShare;
     };

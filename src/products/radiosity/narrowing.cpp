@@ -154,8 +154,9 @@ class Plan {
 
 std::vector<Goal> goals_of(const Scene& scene, const matrix::Matrix& matrix, double width) {
   std::vector<Goal> goals;
+  const Exposed exposed(matrix);
   for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
-    System system = system_of(scene, matrix.factors, c);
+    System system = system_of(scene, exposed.matrix().factors, c);
     const auto is_same = [&](const Goal& goal) {
       return goal.system.reflectances == system.reflectances && goal.system.emissions == system.emissions;
     };

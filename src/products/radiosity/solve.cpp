@@ -6,6 +6,7 @@
 
 #include "exactff/radiosity.h"
 #include "kernel/float_environment.h"
+#include "kernel/outward.h"
 #include "matrix/row_facts.h"
 #include "radiosity/balance.h"
 #include "radiosity/narrowing.h"
@@ -15,6 +16,9 @@
 
 namespace exactff::radiosity {
 namespace {
+
+using kernel::above;
+using kernel::below;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -60,6 +64,13 @@ Factors factors_of(const matrix::Factors& all) {
     factors.end_row();
   }
   return factors;
+}
+
+void take_mean_over_exposed(ViewFactor& f, const ViewFactor& buried) {
+  if (f.upper == 0.0 || buried.upper == 0.0) return;
+  f.lower = std::clamp(below(f.lower / above(1.0 - buried.lower)), 0.0, 1.0);
+  f.upper = buried.upper < 1.0 ? std::min(1.0, above(f.upper / below(1.0 - buried.upper))) : 1.0;
+  f.value = std::clamp(f.value / (1.0 - buried.value), f.lower, f.upper);
 }
 
 // --- One channel ---
@@ -184,15 +195,34 @@ std::vector<Selection> patches_of(const Scene& scene) {
   return patches;
 }
 
+Exposed::Exposed(const matrix::Matrix& given) : given_(given) {
+  if (given.buried.empty()) return;
+  matrix::Matrix& result = made_.emplace(given);
+  const std::size_t columns = given.factors.to.size();
+  for (std::size_t i = 0; i < given.buried.size(); ++i) {
+    const ViewFactor& buried = given.buried[i];
+    for (std::size_t j = 0; j < columns; ++j) {
+      ViewFactor& f = result.factors.entries[i * columns + j];
+      take_mean_over_exposed(f, buried);
+      f.area_from *= 1.0 - buried.value;
+      f.area_to *= 1.0 - given.buried[j].value;
+    }
+    if (!result.back.empty()) take_mean_over_exposed(result.back[i], buried);
+    if (!result.open.empty()) take_mean_over_exposed(result.open[i], buried);
+  }
+}
+
 System system_of(const Scene& scene, const matrix::Factors& factors, std::size_t channel) {
   System system{factors_of(factors), {}, {}};
   set_colours(scene, factors.from, kChannels[channel], system);
   return system;
 }
 
-Solution solve(const Scene& scene, const matrix::Matrix& matrix) {
+Solution solve(const Scene& scene, const matrix::Matrix& given) {
   const kernel::StandardArithmetic arithmetic;
-  require_complete(scene, matrix);
+  require_complete(scene, given);
+  const Exposed exposed(given);
+  const matrix::Matrix& matrix = exposed.matrix();
   Solution solution;
   solution.patches = matrix.factors.from;
   for (std::size_t i = 0; i < solution.patches.size(); ++i) {

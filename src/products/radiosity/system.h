@@ -27,6 +27,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -76,6 +77,18 @@ struct System {
 // The sum over a row of F x for L <= F <= U, x >= 0, rounded outward. A sum of zeros is 0.
 [[nodiscard]] double sum_below(std::span<const Entry> row, const Numbers& x);  // L x
 [[nodiscard]] double sum_above(std::span<const Entry> row, const Numbers& x);  // U x
+
+// The matrix of what is exposed: means over the parts of patches that are not buried, and their areas. A patch that is
+// buried as a whole sees nothing, and has no area. Refers to the given matrix if nothing is buried.
+class Exposed {
+ public:
+  explicit Exposed(const matrix::Matrix& given);
+  [[nodiscard]] const matrix::Matrix& matrix() const { return made_ ? *made_ : given_; }
+
+ private:
+  const matrix::Matrix& given_;
+  std::optional<matrix::Matrix> made_;
+};
 
 // Of a channel (kChannelNames).
 [[nodiscard]] System system_of(const Scene& scene, const matrix::Factors& factors, std::size_t channel);

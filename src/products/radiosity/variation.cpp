@@ -53,6 +53,7 @@ Rgb largest_difference(const Scene& scene, const Gather& gather, const Selection
                                                    Quantity::kRadiosity, KeMeans::kRadiosity);
     for (const Piece& piece : scene.pieces_of(face)) {
       for (const Receiver& receiver : points_of(scene, piece)) {
+        if (buried_under(scene, receiver)) continue;
         const auto channels = gather.at(receiver, formula, {}, GatherBounds::kNone, results);
         for (std::size_t c = 0; c < kColours.size(); ++c) {
           double& most = largest.*kColours[c];

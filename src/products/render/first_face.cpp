@@ -7,8 +7,8 @@
 //      a. D = 0: the ray meets it edge-on, or not at all; pass on. N and D must have the same sign, since t > 0.
 //      b. t is certainly beyond the best piece so far: pass on.
 //      c. A side of the piece has the line on its outer side, by the sign of det(d, c_i - o, c_i+1 - o): pass on.
-//      d. Compare t with that of the best piece; of two that are equal, a front is better than a back, and then the
-//         lower face index, as in a view (view.h).
+//      d. Compare t with that of the best piece; of two that are equal, the one that comes first is better
+//         (scene/contacts.h), as in a view (view.h).
 //   2. The point is o + t d for the best piece, rounded once per coordinate.
 //
 // Every sign is decided by a floating-point filter with a proved bound, or else by exact integers. For t the filter
@@ -27,6 +27,7 @@
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
 #include "receivers/placing.h"
+#include "scene/contacts.h"
 #include "scene/shaft_tree.h"
 #include "text/refuse.h"
 
@@ -171,8 +172,7 @@ class Search {
     if (other.depth.low > best_->depth.high) return false;
     const int order = compare(exact_depth(other.piece), exact_depth(best_->piece));
     if (order != 0) return order < 0;
-    if (other.back != best_->back) return best_->back;
-    return scene_.pieces()[other.piece].face < scene_.pieces()[best_->piece].face;
+    return contacts(scene_).comes_first({other.piece, !other.back}, {best_->piece, !best_->back});
   }
 
   [[nodiscard]] ExactDepth exact_depth(std::uint32_t index) const {

@@ -274,8 +274,9 @@ const FormFactor& Rows::factor(std::size_t receiver, std::size_t source, Results
 
 // Those of the sources come with their form factors.
 void Rows::find_totals(const Receiver& at, const ExactOptions& options, Results& results) const {
-  const whole_view::LightFormula formula =
+  whole_view::LightFormula formula =
       whole_view::light_formula(*request_.scene, at.on, side_of(*request_.scene, at), *request_.total, request_.ke);
+  if (buried_under(*request_.scene, at)) formula.emitted = {};
   results.totals =
       gather_ ? gather_->at(at, formula, {.engine = request_.engine}, radiosity::GatherBounds::kAll, results.gathered)
               : light_->at(at, formula, options, results.all);

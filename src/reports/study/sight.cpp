@@ -15,6 +15,7 @@ Sight sight_of(Outcome outcome) {
     case Outcome::kHiddenByOne:
     case Outcome::kHiddenByUnion:
       return Sight::kHidden;
+    case Outcome::kBuried:
     case Outcome::kReceiverFace:
     case Outcome::kBehind:
     case Outcome::kBelowHorizon:

@@ -17,6 +17,52 @@ bool is_name(std::string_view name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), allowed_in_name);
 }
 
+// What is buried (scene.h) neither sends nor receives, whatever the method.
+class ExposedEvaluator : public Evaluator {
+ public:
+  ExposedEvaluator(const Scene& scene, std::unique_ptr<Evaluator> inner) : scene_(scene), inner_(std::move(inner)) {}
+
+  void look_from(const Receiver& receiver) override {
+    is_buried_ = buried_under(scene_, receiver).has_value();
+    inner_->look_from(receiver);
+  }
+  [[nodiscard]] Estimate form_factor(const PreparedSource& source) override {
+    return is_buried_ ? Estimate{} : inner_->form_factor(source);
+  }
+  void form_factors(std::span<const PreparedSource* const> sources, std::span<Estimate> estimates) override {
+    if (!is_buried_) return inner_->form_factors(sources, estimates);
+    std::ranges::fill(estimates, Estimate{});
+  }
+
+ private:
+  const Scene& scene_;
+  std::unique_ptr<Evaluator> inner_;
+  bool is_buried_ = false;
+};
+
+class ExposedScene : public PreparedScene {
+ public:
+  ExposedScene(const Scene& scene, std::unique_ptr<PreparedScene> inner)
+      : PreparedScene(scene), inner_(std::move(inner)) {}
+  [[nodiscard]] std::unique_ptr<PreparedSource> prepare_source(const Selection& selection) const override {
+    return inner_->prepare_source(selection);
+  }
+  [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
+    return std::make_unique<ExposedEvaluator>(scene(), inner_->configure(settings));
+  }
+
+ private:
+  std::unique_ptr<PreparedScene> inner_;
+};
+
+Method with_buried_receivers(Method method) {
+  method.prepare = [inner = std::move(method.prepare)](const Scene& scene) -> std::unique_ptr<PreparedScene> {
+    if (!some_is_buried(scene)) return inner(scene);
+    return std::make_unique<ExposedScene>(scene, inner(scene));
+  };
+  return method;
+}
+
 class Registry {
  public:
   static Registry& get() {
@@ -29,7 +75,7 @@ class Registry {
     if (!method.prepare) throw std::logic_error("method '" + method.name + "' cannot be prepared");
     const std::scoped_lock lock(mutex_);
     if (find(method.name) != nullptr) throw std::logic_error("there is a method '" + method.name + "' already");
-    return methods_.emplace_back(std::move(method));
+    return methods_.emplace_back(with_buried_receivers(std::move(method)));
   }
 
   std::vector<const Method*> all() {
@@ -46,7 +92,7 @@ class Registry {
 
  private:
   Registry() {
-#define EXACTFF_METHOD(name) methods_.push_back(name##_method());
+#define EXACTFF_METHOD(name) methods_.push_back(with_buried_receivers(name##_method()));
 #include "methods/list.h"
 #undef EXACTFF_METHOD
   }

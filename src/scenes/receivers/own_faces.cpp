@@ -3,6 +3,7 @@
 
 #include "exactff/error.h"
 #include "exactff/receiver.h"
+#include "scene/contacts.h"
 #include "scene/scene_data.h"
 #include "text/numbered_name.h"
 #include "text/phrases.h"
@@ -23,6 +24,12 @@ FaceId one_face(const Scene& scene, const std::string& name) {
 }
 
 }  // namespace
+
+std::optional<FaceId> buried_under(const Scene& scene, const Receiver& receiver) {
+  return buried_under(scene, receiver.on, receiver.point, receiver.normal);
+}
+
+bool some_is_buried(const Scene& scene) { return !contacts(scene).empty(); }
 
 std::vector<FaceId> own_faces_named(const Scene& scene, std::string_view name) {
   const std::size_t plus = name.find('+', std::min(name.rfind(':'), name.size()));

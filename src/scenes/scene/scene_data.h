@@ -8,6 +8,7 @@
 
 #include "exactff/scene.h"
 #include "scene/closed_surfaces.h"
+#include "scene/contacts.h"
 #include "scene/edges.h"
 #include "scene/extent.h"
 #include "scene/panels.h"
@@ -38,6 +39,8 @@ struct Scene::Data {
   mutable ShaftTree panel_tree;
   mutable std::once_flag surfaces_found;  // see closed_surfaces()
   mutable ClosedSurfaces surfaces;
+  mutable std::once_flag contacts_found;  // see contacts()
+  mutable Contacts contacts;
   mutable std::once_flag connectedness_found;  // see edges_per_silhouette()
   mutable double edges_per_silhouette = 1.0;
   mutable std::once_flag edges_found;  // see scene_edges()

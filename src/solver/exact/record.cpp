@@ -35,7 +35,8 @@ std::string_view to_string(Engine engine) {
 }
 
 std::string_view to_string(Outcome outcome) {
-  constexpr std::string_view kNames[] = {"the receiver lies on it",
+  constexpr std::string_view kNames[] = {"the receiver is buried",
+                                         "the receiver lies on it",
                                          "behind",
                                          "below the horizon",
                                          "unoccluded",
@@ -56,6 +57,8 @@ using text::counted;
 
 StageNote cull_note(const PlaneRecord& plane) {
   switch (plane.outcome) {
+    case Outcome::kBuried:
+      return {"cull", true, "the receiver is buried where a solid touches its face: it sees nothing"};
     case Outcome::kReceiverFace:
       return {"cull", true, "the receiver lies on this face: it contributes 0"};
     case Outcome::kBehind:

@@ -41,6 +41,18 @@ bool sees_some_of(const SeenParts& seen, const PreparedPatch& from, const Prepar
   return false;
 }
 
+// The mean over the whole patch: nothing is seen from what is buried.
+ViewFactor of_whole(ViewFactor f, const PreparedPatch& from, const PreparedPatch& to) {
+  f.area_from = from.whole_area;
+  f.area_to = to.whole_area;
+  const kernel::Disc& share = from.exposed_share;
+  if (f.claim == Claim::kZero || (share.centre == 1.0 && share.radius == 0.0)) return f;
+  f.lower = std::clamp(lower_end(f.lower * share), 0.0, 1.0);
+  f.upper = std::clamp(upper_end(f.upper * share), 0.0, 1.0);
+  f.value = std::clamp(f.value * share.centre, f.lower, f.upper);
+  return f;
+}
+
 }  // namespace
 
 struct Pairs::Patches {
@@ -89,8 +101,9 @@ Pairs::Pairs(const Scene& scene, std::span<const Selection> from, std::span<cons
 }
 Pairs::~Pairs() = default;
 
-double Pairs::area_from(std::size_t row) const { return patches_->rows[row]->area; }
-double Pairs::area_to(std::size_t column) const { return patches_->columns[column]->area; }
+double Pairs::area_from(std::size_t row) const { return patches_->rows[row]->whole_area; }
+double Pairs::area_to(std::size_t column) const { return patches_->columns[column]->whole_area; }
+kernel::Disc Pairs::exposed_share(std::size_t row) const { return patches_->rows[row]->exposed_share; }
 
 bool Pairs::is_enclosed(std::size_t row) const {
   const PreparedPatch& patch = *patches_->rows[row];
@@ -111,6 +124,7 @@ bool Pairs::may_see(std::size_t row, std::size_t column) const {
 
 double Pairs::unhidden(std::size_t row, std::size_t column) const {
   const PreparedPatch &from = *patches_->rows[row], &to = *patches_->columns[column];
+  if (from.parts.empty()) return 0.0;
   PatchBounds bounds(patches_->scene, patches_->seen, from, to);
   const Strata strata = strata_of(from.parts, kFewestStrata);
   double sum = 0.0;
@@ -145,7 +159,9 @@ void Pairs::compute(std::size_t pair, const std::function<void(std::size_t, cons
   }
   patches_->memories.give_back(std::move(memory));
   for (const std::size_t entry : entries_[pair]) {
-    take(entry, ends_of(entry).turned ? transpose(computed, *from, *to) : computed);
+    const bool is_turned = ends_of(entry).turned;
+    take(entry, of_whole(is_turned ? transpose(computed, *from, *to) : computed, is_turned ? *to : *from,
+                         is_turned ? *from : *to));
   }
 }
 

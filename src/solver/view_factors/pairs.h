@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "exactff/view_factors.h"
+#include "kernel/disc.h"
 #include "view_factors/columns.h"
 
 namespace exactff::view_factors {
@@ -32,6 +33,8 @@ class Pairs {
   [[nodiscard]] std::size_t pair_of(std::size_t entry) const { return pair_of_[entry]; }
   [[nodiscard]] double area_from(std::size_t row) const;
   [[nodiscard]] double area_to(std::size_t column) const;
+  // Of the area of a row's patch, what is not buried: a share of exactly 1 if nothing is, exactly 0 if all is.
+  [[nodiscard]] kernel::Disc exposed_share(std::size_t row) const;
   // Whether closed surfaces stand around all that the row's patch sees (enclosures.h), if that can be proved.
   [[nodiscard]] bool is_enclosed(std::size_t row) const;
   // Whether all that the row's patch sees lies within this one of the scene's closed surfaces, by edges that are cut at

@@ -158,7 +158,7 @@ kernel::Disc enclosed_area(const Part& part, const Units& units) {
 
 }  // namespace
 
-std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch) {
+std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch, PartsOf what) {
   const Panels& panels = exactff::panels(scene.scene);
   // Pieces of one face, and panels of one sheet.
   const auto never_overlap = [&](PanelId a, PanelId b) {
@@ -174,6 +174,13 @@ std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch) {
       for (const PanelId other : earlier) {
         if (never_overlap(panel, other) || scene.panel(panel).box.is_apart_from(scene.panel(other).box)) continue;
         left = outside(left, sides_of(whole(scene, other), scene.units), scene.units);
+      }
+      if (what == PartsOf::kExposed) {
+        for (const std::uint32_t cover : plane.covers) {
+          if (!scene.panel(panel).box.is_apart_from(scene.pieces[cover].box)) {
+            left = outside(left, sides_of(whole(scene, cover), scene.units), scene.units);
+          }
+        }
       }
       earlier.push_back(panel);
       result.insert(result.end(), left.begin(), left.end());

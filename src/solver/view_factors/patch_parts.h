@@ -10,7 +10,10 @@
 namespace exactff::view_factors {
 
 // The patch's panels (scene/panels.h); where they overlap in one oriented plane, each point belongs to the first.
-[[nodiscard]] std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch);
+// kExposed: without what is buried (scene/contacts.h).
+enum class PartsOf { kWhole, kExposed };
+[[nodiscard]] std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch,
+                                         PartsOf what = PartsOf::kWhole);
 
 // Positive in front.
 [[nodiscard]] Plane plane_of(const Part& part, const Units& units);

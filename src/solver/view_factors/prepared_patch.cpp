@@ -3,17 +3,47 @@
 #include <algorithm>
 #include <tuple>
 
+#include "scene/contacts.h"
 #include "view_factors/patch_parts.h"
 
 namespace exactff::view_factors {
+namespace {
+
+bool is_partly_buried(const Scene& scene, const Selection& patch) {
+  if (contacts(scene).empty()) return false;
+  return std::ranges::any_of(scene.faces_of(patch), [&](FaceId face) {
+    const std::uint32_t first = scene.face(face).first_piece;
+    for (std::uint32_t piece = first; piece < first + scene.face(face).piece_count; ++piece) {
+      if (!contacts(scene).covers(piece).empty()) return true;
+    }
+    return false;
+  });
+}
+
+}  // namespace
 
 PreparedPatch::PreparedPatch(const ExactScene& scene, const Selection& patch, Columns what_it_is)
     : selection(patch),
       parts(parts_of(scene, patch)),
+      exposed_share{.centre = 1.0},
       enclosed_area(enclosed_area_of(parts, scene.units)),
       planar(is_planar(scene.scene, patch)),
       what(what_it_is) {
   std::tie(unit_area, area) = areas_of(scene, patch, parts);
+  whole_area = area;
+  if (is_partly_buried(scene.scene, patch)) leave_out_buried(scene);
+}
+
+void PreparedPatch::leave_out_buried(const ExactScene& scene) {
+  parts = parts_of(scene, selection, PartsOf::kExposed);
+  if (parts.empty()) {
+    exposed_share = {};
+    return;
+  }
+  const kernel::Disc whole = enclosed_area;
+  enclosed_area = enclosed_area_of(parts, scene.units);
+  exposed_share = enclosed_area / whole;
+  std::tie(unit_area, area) = areas_of(scene, selection, parts);
 }
 
 double counted_area(const PreparedPatch& from, const PreparedPatch& to) {

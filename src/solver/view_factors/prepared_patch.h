@@ -17,15 +17,22 @@ struct PreparedPatch {
   PreparedPatch(const ExactScene& scene, const Selection& patch, Columns what);
 
   Selection selection;
+  // Factors between patches are found for what is exposed: buried parts neither send nor receive. If nothing is, there
+  // are no parts, and the areas are those of the whole patch.
   std::vector<Part> parts;
-  double area = 0.0;           // in the scene's unit of length, squared
-  double unit_area = 0.0;      // in squares of the unit of Point::at
+  double whole_area = 0.0;     // with what is buried, in the scene's unit of length, squared
+  kernel::Disc exposed_share;  // of the area; 1 exactly if nothing is buried, 0 exactly if all is
+  double area = 0.0;           // of the exposed part, in the same unit
+  double unit_area = 0.0;      // the same in squares of the unit of Point::at
   kernel::Disc enclosed_area;  // the same
   bool planar = true;          // all of its faces
   Columns what;                // of columns; else kPatches
   SeenParts::OfPatch seen;
 
   [[nodiscard]] bool surrounds() const { return what == Columns::kSurroundings; }
+
+ private:
+  void leave_out_buried(const ExactScene& scene);
 };
 
 // The area that errors of an integral over the row's patch are divided by: of both directions, if both may be asked

@@ -24,7 +24,7 @@ class BooleanWalk {
 
   // Steps 1 to 4 alone.
   Cutters find_cutters() {
-    if (!gather_source() || side_of(plane_, view_.x) <= 0 || !clip_by_horizon()) return {};
+    if (view_.is_buried || !gather_source() || side_of(plane_, view_.x) <= 0 || !clip_by_horizon()) return {};
     make_hull();
     if (gather_occluders()) list_cutters();
     return std::move(result_.cutters);
@@ -46,6 +46,7 @@ class BooleanWalk {
  private:
   Outcome find_outcome();
   bool gather_source();
+  [[nodiscard]] Ring ring_of(std::uint32_t piece) const;
   bool clip_by_horizon();
   void make_hull();
   bool gather_occluders();
@@ -74,6 +75,7 @@ class BooleanWalk {
 
 Outcome BooleanWalk::find_outcome() {
   // 1. Cull.
+  if (view_.is_buried) return Outcome::kBuried;
   if (!gather_source()) return Outcome::kReceiverFace;
   if (side_of(plane_, view_.x) <= 0) return Outcome::kBehind;
   // 2. Clip by the receiver's horizon.
@@ -99,17 +101,21 @@ Outcome BooleanWalk::find_outcome() {
 
 // The pieces as x sees them, without the receiver's own faces. False if none is left.
 bool BooleanWalk::gather_source() {
-  const auto vertices = view_.scene.vertices();
   for (const std::uint32_t index : plane_.pieces) {
     const Piece& piece = view_.scene.pieces()[index];
     if (view_.is_own(piece.face)) continue;
-    Ring ring;
-    for (const std::uint32_t corner : view_.scene.corners(piece)) {
-      ring.push_back(kernel::make_direction(kernel::exact_difference(vertices[corner], view_.x).v));
-    }
-    source_.push_back(std::move(ring));
+    source_.push_back(ring_of(index));
   }
   return !source_.empty();
+}
+
+// As x sees the front of the piece.
+Ring BooleanWalk::ring_of(std::uint32_t piece) const {
+  Ring ring;
+  for (const std::uint32_t corner : view_.scene.corners(view_.scene.pieces()[piece])) {
+    ring.push_back(kernel::make_direction(kernel::exact_difference(view_.scene.vertices()[corner], view_.x).v));
+  }
+  return ring;
 }
 
 bool BooleanWalk::clip_by_horizon() {
@@ -169,6 +175,12 @@ bool BooleanWalk::gather_occluders() {
     occluder = {};
     return !hidden;
   });
+  for (const std::uint32_t cover : plane_.covers) {
+    if (hidden) break;
+    ++record.candidates;
+    occluders_.push_back({view_.scene.pieces()[cover].face, ring_of(cover)});
+    std::ranges::reverse(occluders_.back().ring);  // x sees its back
+  }
   return !hidden;
 }
 

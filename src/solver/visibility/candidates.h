@@ -43,6 +43,7 @@ class Candidates {
  private:
   void start();
   [[nodiscard]] bool visit(PanelId panel, bool inside);
+  [[nodiscard]] std::optional<PanelId> add_covers();
 
   const PlaneQuery& query_;
   const Panels& panels_;

@@ -49,6 +49,7 @@ class EdgeWalk {
 std::optional<Outcome> EdgeWalk::find_outcome() {
   PlaneRecord& record = result_.record;
   // 1. Cull.
+  if (query_.view.is_buried) return Outcome::kBuried;
   if (is_own()) return Outcome::kReceiverFace;
   if (side_of(query_.plane, query_.view.x) <= 0) return Outcome::kBehind;
   // 2. Clip by the receiver's horizon.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scene/contacts.h"
 #include "visibility/plane_frame.h"
 
 namespace exactff::visibility {
@@ -9,7 +10,11 @@ namespace exactff::visibility {
 using kernel::Rational;
 
 View::View(const Scene& scene_in, const Receiver& receiver)
-    : scene(scene_in), x(receiver.point), n(receiver.normal), on(receiver.on) {}
+    : scene(scene_in),
+      x(receiver.point),
+      n(receiver.normal),
+      on(receiver.on),
+      is_buried(buried_under(scene_in, receiver.on, receiver.point, receiver.normal).has_value()) {}
 
 kernel::Direction View::normal() const { return kernel::make_direction(kernel::exact_vector(n).v); }
 

@@ -30,6 +30,7 @@ struct View {
   Vec3 x;
   Vec3 n;                      // the receiver's normal
   std::span<const FaceId> on;  // the receiver's own faces
+  bool is_buried;              // see scene/contacts.h: nothing is seen
 
   [[nodiscard]] bool is_own(FaceId face) const { return std::ranges::find(on, face) != on.end(); }
   // The normal as a direction in integers, which are seldom needed.

@@ -19,6 +19,7 @@ bool some_positive(const std::vector<int>& depths) {
 }  // namespace
 
 bool searches_silhouettes(const PlaneQuery& query) {
+  if (!query.plane.covers.empty()) return false;
   constexpr double kLeastSaving = 4.0;
   const BoundaryRequest& request = query.request;
   if (request.silhouettes == Silhouetting::kNever || !request.culls() || request.only_occluders != nullptr)

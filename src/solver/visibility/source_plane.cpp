@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 
+#include "scene/contacts.h"
+#include "scene/coplanar.h"
 #include "visibility/polygon_sets.h"
 
 namespace exactff::visibility {
@@ -40,9 +43,12 @@ std::string plane_key(const ExactVec3& normal, const Vec3& point) {
   return key + std::to_string(exponent);
 }
 
-// Of a sheet that is not all in the plane, as when one of its faces is selected, the pieces remain.
-std::vector<PanelId> panels_of(const Panels& all, const std::vector<std::uint32_t>& pieces) {
-  if (all.empty()) return pieces;
+// Of a sheet that is not all in the plane, as when one of its faces is selected, the pieces remain, and of one that is
+// buried in part.
+std::vector<PanelId> panels_of(const SourcePlane& plane) {
+  const Panels& all = *plane.scene_panels;
+  const std::vector<std::uint32_t>& pieces = plane.pieces;
+  if (all.empty() || !plane.covers.empty()) return pieces;
   std::vector<PanelId> result;
   std::map<std::uint32_t, bool> is_whole;  // by sheet
   for (const std::uint32_t piece : pieces) {
@@ -58,6 +64,43 @@ std::vector<PanelId> panels_of(const Panels& all, const std::vector<std::uint32_
     for (PanelId k = 0; is_new && known->second && k < sheet.panel_count; ++k) result.push_back(sheet.first_panel + k);
   }
   std::ranges::sort(result);
+  return result;
+}
+
+void set_covers(const Scene& scene, SourcePlane& plane) {
+  std::set<std::uint32_t> covers;
+  for (const std::uint32_t piece : plane.pieces) {
+    const auto of_piece = contacts(scene).covers(piece);
+    covers.insert(of_piece.begin(), of_piece.end());
+  }
+  plane.covers.assign(covers.begin(), covers.end());
+}
+
+// Whether a cover overlaps a piece that it does not bury.
+bool have_conflict(const Scene& scene, const SourcePlane& plane) {
+  return std::ranges::any_of(plane.pieces, [&](std::uint32_t piece) {
+    const auto own = contacts(scene).covers(piece);
+    return std::ranges::any_of(plane.covers, [&](std::uint32_t cover) {
+      return !std::ranges::binary_search(own, cover) && overlap(scene, scene.pieces()[piece], scene.pieces()[cover]);
+    });
+  });
+}
+
+std::vector<SourcePlane> with_covers(const Scene& scene, std::vector<SourcePlane> planes) {
+  std::vector<SourcePlane> result;
+  for (SourcePlane& plane : planes) {
+    set_covers(scene, plane);
+    if (plane.covers.empty() || !have_conflict(scene, plane)) {
+      result.push_back(std::move(plane));
+      continue;
+    }
+    for (const std::uint32_t piece : plane.pieces) {
+      SourcePlane& one = result.emplace_back(plane);
+      one.faces = {scene.pieces()[piece].face};
+      one.pieces = {piece};
+      set_covers(scene, one);
+    }
+  }
   return result;
 }
 
@@ -77,14 +120,15 @@ std::vector<SourcePlane> group_by_plane(const Scene& scene, const std::vector<Fa
         const FineNormal fine = fine_normal(normal);
         const Vec3 &second = scene.vertices()[piece.frame[1]], &third = scene.vertices()[piece.frame[2]];
         planes.push_back(
-            {&panels(scene), {}, {}, {}, kernel::make_direction(std::move(normal)), fine, point, second, third});
+            {&panels(scene), {}, {}, {}, {}, kernel::make_direction(std::move(normal)), fine, point, second, third});
       }
       SourcePlane& plane = planes[entry->second];
       if (plane.faces.empty() || plane.faces.back() != id) plane.faces.push_back(id);
       plane.pieces.push_back(p);
     }
   }
-  for (SourcePlane& plane : planes) plane.panels = panels_of(*plane.scene_panels, plane.pieces);
+  if (!contacts(scene).empty()) planes = with_covers(scene, std::move(planes));
+  for (SourcePlane& plane : planes) plane.panels = panels_of(plane);
   return planes;
 }
 
@@ -188,7 +232,8 @@ std::vector<SourcePlane> split_by_face(const Scene& scene, const SourcePlane& pl
     SourcePlane& one = result.emplace_back(plane);
     one.faces = {face};
     std::erase_if(one.pieces, [&](std::uint32_t piece) { return scene.pieces()[piece].face != face; });
-    one.panels = panels_of(*plane.scene_panels, one.pieces);
+    set_covers(scene, one);
+    one.panels = panels_of(one);
     const auto& frame = scene.pieces()[one.pieces.front()].frame;
     one.point = scene.vertices()[frame[0]];
     one.second = scene.vertices()[frame[1]];

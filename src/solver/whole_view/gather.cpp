@@ -47,6 +47,7 @@ std::uint32_t whole_of(const Scene& scene, std::uint32_t piece, ViewEdges::Whole
 
 void ViewEdges::start(const visibility::View& view) {
   scene_ = &view.scene;
+  contacts_ = &contacts(view.scene);
   outlines_.start(view.scene, view.x, usual_distance(view));
   outlines_.set_horizon(view.n);
   depths_.start(view.scene, view.x, outlines_.scale_exponent());
@@ -65,6 +66,8 @@ void ViewEdges::start(const visibility::View& view) {
 }
 
 void ViewEdges::gather(const visibility::View& view, Wholes wholes) {
+  seen_in_.clear();
+  if (view.is_buried) return;
   const std::span<const Piece> pieces = view.scene.pieces();
   kernel::Steps steps("faces", pieces.size());
   // In the order of the tree, so that neighbours in space are neighbours in memory.

@@ -93,6 +93,7 @@ class ViewSolver {
     set_patches();
     set_back();
     set_open();
+    set_buried();
     list_arcs();
     const ViewEdges::Work& work = edges_.work();
     result_.record = {work.outlines, work.windows, work.pairs, work.undecided, work.pierced, edges_.parts().size()};
@@ -216,11 +217,20 @@ class ViewSolver {
         edges_.sides(), [](const ViewEdges::Sides& sides) { return sides.right == kNothing && !sides.on_horizon; });
     if (something && some_open) return set_share(all_, result_.open);
     reset(result_.open);
-    if (something) return;
-    result_.open.enclosure = Enclosure::of(1.0);
-    result_.open.value = 1.0;
-    result_.open.status = Status::kCertified;
-    exact::set_bounds(result_.open);
+    if (!something && !view_.is_buried) set_to_one(result_.open);
+  }
+
+  void set_buried() {
+    reset(result_.buried);
+    result_.buried_under = buried_under(scene_, receiver_);
+    if (result_.buried_under) set_to_one(result_.buried);
+  }
+
+  static void set_to_one(ViewShare& share) {
+    share.enclosure = Enclosure::of(1.0);
+    share.value = 1.0;
+    share.status = Status::kCertified;
+    exact::set_bounds(share);
   }
 
   void list_arcs() {

@@ -1,9 +1,10 @@
 // All that is seen from x, as arcs: parts of edges, each with what is seen beside it on its left and on its right.
 //
 // What is seen in a direction is the nearest face whose plane does not hold x and that is not one of x's own; of faces
-// in one plane a front before a back, and of several fronts, or backs, the one with the lowest index. An outline is the
-// part above the horizon of a convex piece of a face, as x sees it. Its edges have its inside on their left. An edge of
-// outline O is an arc wherever O is seen just to the left of it. What is seen just to the right is then
+// in one plane the one that comes first (scene/contacts.h): a front before a back, and of several fronts, or backs, the
+// one with the lowest index. A receiver that is buried sees nothing. An outline is the part above the horizon of a
+// convex piece of a face, as x sees it. Its edges have its inside on their left. An edge of outline O is an arc
+// wherever O is seen just to the left of it. What is seen just to the right is then
 //   - the nearest of the outlines that cover the right side of the edge there, or
 //   - nothing.
 // Where two edges lie in one plane through x, and each is an arc with the other's outline on its right, only that of
@@ -34,6 +35,7 @@
 #include <utility>
 #include <vector>
 
+#include "scene/contacts.h"
 #include "visibility/edge_covers.h"
 #include "visibility/edge_lanes.h"
 #include "visibility/plane_visibility.h"
@@ -143,9 +145,12 @@ class ViewEdges : public visibility::EdgeCovers {
   void hide_where_nearer(Run& run, unsigned k, OutlineId by, const Interval& interval);
   void note_rivals(OutlineId outline);
   // Depths.
-  // Of outlines in one plane, a front is seen before a back, and then the lower piece, which is of the lower face.
+  // Of outlines in one plane.
   [[nodiscard]] bool comes_first(OutlineId p, OutlineId q) const {
-    return front_[p] != front_[q] ? shows_front(p) : &piece(p) < &piece(q);
+    const auto side = [&](OutlineId o) {
+      return Contacts::Side{static_cast<std::uint32_t>(&piece(o) - scene_->pieces().data()), shows_front(o)};
+    };
+    return contacts_->comes_first(side(p), side(q));
   }
   [[nodiscard]] Order order(OutlineId p, OutlineId q, EdgeId edge, OutlineId owner, Side side);
   [[nodiscard]] int order_beside(OutlineId p, OutlineId q, EdgeId edge, OutlineId owner);
@@ -166,6 +171,7 @@ class ViewEdges : public visibility::EdgeCovers {
   void trace_piercing(const Piercing& piercing);
 
   const Scene* scene_ = nullptr;
+  const Contacts* contacts_ = nullptr;
   Windows windows_;
   Depths depths_;
   std::vector<std::uint32_t> whole_;       // by outline

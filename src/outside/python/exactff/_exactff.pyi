@@ -149,11 +149,11 @@ def view_factor(
 def view_factor_matrix(
     scene: Scene, from_patches: Sequence[str], to_patches: Sequence[str], accuracy: float, budget: int, certify: bool,
     backs: bool, open: bool, both_directions: bool, threads: int, progress: _Tell
-) -> tuple[list[_Factor], list[_Factor], list[_Factor], list[tuple[float, float]], list[str],
+) -> tuple[list[_Factor], list[_Factor], list[_Factor], list[_Factor], list[tuple[float, float]], list[str],
            tuple[int, Optional[_Apart], list[_Apart]]]: ...
 def with_two_sided(scene: Scene, names: Sequence[str]) -> Scene: ...
 def view(scene: Scene, point: Sequence[float], normal: Sequence[float], on: Sequence[int], faces: bool, digits: int,
-         precision_cap: int) -> tuple[list[tuple[str, _Share, _Share, bool]], _Share, _Share]: ...
+         precision_cap: int) -> tuple[list[tuple[str, _Share, _Share, bool]], _Share, _Share, Optional[str]]: ...
 def radiosity(
     scene: Scene, accuracy: Optional[float], budget: int, width: Optional[float], backs: bool, threads: int,
     progress: _Tell

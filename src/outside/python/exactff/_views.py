@@ -60,7 +60,7 @@ class ViewFactorMatrix:
     """View factors between patches, as arrays. Made by :func:`view_factor_matrix`.
 
     ``lower`` and ``upper`` are as strong as ``claim`` says. ``row_sums`` (n, 2) are bounds of the sums of the rows, with
-    ``back`` and ``open`` if they were computed. Where ``reasons_against_one`` is empty, every row adds up to 1.
+    ``back`` and ``open`` if they were computed, and ``buried``. Where ``reasons_against_one`` is empty, every row adds up to 1.
     """
 
     from_names: tuple[str, ...]
@@ -76,6 +76,7 @@ class ViewFactorMatrix:
     areas_to: Floats  #: (m,)
     back: Optional[tuple[ViewFactor, ...]]  #: for each row what meets backs of faces
     open: Optional[tuple[ViewFactor, ...]]  #: for each row what meets nothing
+    buried: Optional[tuple[ViewFactor, ...]]  #: for each row the share of its area under a solid; None if nothing is
     row_sums: Floats
     reasons_against_one: tuple[str, ...]
     reciprocity: Optional[Reciprocity]  #: None unless both directions were computed apart
@@ -118,10 +119,11 @@ class View(Mapping[str, SeenPatch]):
     full form factor.
     """
 
-    def __init__(self, patches: dict[str, SeenPatch], back: Share, open: Share) -> None:
+    def __init__(self, patches: dict[str, SeenPatch], back: Share, open: Share, buried_under: Optional[str] = None) -> None:
         self._patches = patches
         self.back = back
         self.open = open
+        self.buried_under = buried_under  #: the face of a solid on the receiver's face, which then sees nothing
 
     def __getitem__(self, name: str) -> SeenPatch:
         return self._patches[name]
@@ -205,7 +207,7 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
     """
     rows, columns = _patches(scene, from_patches, "from_patches"), _patches(scene, to_patches, "to_patches")
     with shown(progress, "view factor") as tell:
-        entries, back, free, sums, reasons, mutual = _exactff.view_factor_matrix(
+        entries, back, free, below, sums, reasons, mutual = _exactff.view_factor_matrix(
             scene._scene, rows, columns, _accuracy(accuracy), _budget(budget), bool(certify), bool(backs), bool(sky),
             bool(both_directions), _arrays.thread_count(threads), tell)
     table = [ViewFactor(*entry) for entry in entries]
@@ -214,7 +216,8 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
     def array(get: Callable[[ViewFactor], Any], kind: Any) -> Any:
         return np.array([get(f) for f in table], kind).reshape(shape)
 
-    lists = [tuple(ViewFactor(*f) for f in one) if wanted else None for one, wanted in ((back, backs), (free, sky))]
+    lists = [tuple(ViewFactor(*f) for f in one) if wanted else None
+             for one, wanted in ((back, backs), (free, sky), (below, below))]
     wide = sum(not f.accurate for one in (table, *(one for one in lists if one)) for f in one)
     _warn_of_width(wide, accuracy, budget)
     by_rows = tuple(tuple(table[i * shape[1]:(i + 1) * shape[1]]) for i in range(shape[0]))
@@ -223,8 +226,8 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
         tuple(rows), tuple(columns), array(lambda f: f.value, np.float64), array(lambda f: f.lower, np.float64),
         array(lambda f: f.upper, np.float64), array(lambda f: f.claim, np.str_),
         array(lambda f: f.way, np.str_), array(lambda f: f.accurate, np.bool_), array(lambda f: f.limit, np.str_),
-        np.array([row[0].area_from for row in (by_rows if columns else zip(lists[0] or lists[1] or ()))]),
-        np.array([f.area_to for f in by_rows[0]] if by_rows else []), lists[0], lists[1],
+        np.array([row[0].area_from for row in (by_rows if columns else zip(lists[0] or lists[1] or lists[2] or ()))]),
+        np.array([f.area_to for f in by_rows[0]] if by_rows else []), lists[0], lists[1], lists[2],
         np.array(sums, np.float64).reshape(-1, 2), tuple(reasons), reciprocity, by_rows)
 
 
@@ -261,11 +264,11 @@ def view(scene: Scene, at: ArrayLike, normal: ArrayLike, on: On = None, *, patch
     scene._warn_of_misses(p, n, own)
     if not 1 <= precision_cap <= _MOST_BITS:
         refuse(f"precision_cap is {precision_cap}", f"it is a number of bits from 1 to {_MOST_BITS}", "leave it out")
-    rows, back, free = _exactff.view(scene._scene, tuple(p[0].tolist()), tuple(n[0].tolist()),
+    rows, back, free, buried = _exactff.view(scene._scene, tuple(p[0].tolist()), tuple(n[0].tolist()),
                                      [int(f) for f in own[0] if f >= 0], patches == "faces", digits, precision_cap)
 
     def share(row: tuple[float, float, float, int]) -> Share:
         return Share(row[0], row[1], row[2], Status(row[3]))
 
     seen = {name: SeenPatch(share(f), share(s), stacked) for name, f, s, stacked in rows}
-    return View(seen, share(back), share(free))
+    return View(seen, share(back), share(free), buried)

@@ -1,7 +1,7 @@
 // Two convex polygons of a plane have no inner point in common if and only if a line along an edge of one of them
 // separates them (the separating axis theorem). The signs are those of a projection along an axis that does not lie in
 // the plane, which is one-to-one and keeps lines. They are exact.
-#include "matrix/coplanar.h"
+#include "scene/coplanar.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "kernel/expect.h"
 #include "scene/places.h"
 
-namespace exactff::matrix {
+namespace exactff {
 namespace {
 
 // The point without the coordinate of the axis.
@@ -30,6 +30,13 @@ struct Outline {
 int turn_of(const Scene& scene, const Piece& piece, int axis) {
   const auto at = [&](int i) { return projected(scene.vertices()[piece.frame[i]], axis); };
   return side(at(0), at(1), at(2));
+}
+
+// An axis that does not lie in the piece's plane.
+int axis_off(const Scene& scene, const Piece& piece) {
+  int axis = 0;
+  while (axis < 2 && turn_of(scene, piece, axis) == 0) ++axis;
+  return axis;
 }
 
 Outline outline_of(const Scene& scene, const Piece& piece, int axis) {
@@ -83,14 +90,19 @@ bool are_boxes_apart(const Scene& scene, const Piece& a, const Piece& b) {
 bool overlap(const Scene& scene, const Piece& a, const Piece& b) {
   EXACTFF_EXPECT(are_coplanar(scene, a, b));
   if (are_boxes_apart(scene, a, b)) return false;
-  int axis = 0;
-  while (axis < 2 && turn_of(scene, a, axis) == 0) ++axis;
+  const int axis = axis_off(scene, a);
   const Outline of_a = outline_of(scene, a, axis), of_b = outline_of(scene, b, axis);
   return !has_separating_edge(of_a, of_b) && !has_separating_edge(of_b, of_a);
+}
+
+bool have_same_front(const Scene& scene, const Piece& a, const Piece& b) {
+  EXACTFF_EXPECT(are_coplanar(scene, a, b));
+  const int axis = axis_off(scene, a);
+  return turn_of(scene, a, axis) == turn_of(scene, b, axis);
 }
 
 bool have_same_corners(const Scene& scene, const Piece& a, const Piece& b) {
   return a.corner_count == b.corner_count && sorted_places(scene, a) == sorted_places(scene, b);
 }
 
-}  // namespace exactff::matrix
+}  // namespace exactff

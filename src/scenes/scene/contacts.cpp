@@ -1,0 +1,286 @@
+#include "scene/contacts.h"
+
+#include <algorithm>
+#include <set>
+
+#include "kernel/exact_vec.h"
+#include "kernel/plane_through.h"
+#include "scene/coplanar.h"
+#include "scene/places.h"
+#include "scene/scene_data.h"
+#include "scene/shaft_tree.h"
+#include "scene/solids.h"
+
+namespace exactff {
+namespace {
+
+using kernel::ExactVec3;
+
+bool meet(const Box& a, const Box& b) {
+  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
+         a.low.z <= b.high.z && b.low.z <= a.high.z;
+}
+
+using FaceCorners = std::vector<std::uint32_t>;  // places, in order
+
+class ContactFinder {
+ public:
+  explicit ContactFinder(const Scene& scene) : scene_(scene), pieces_(scene.pieces()), solids_(scene) {}
+
+  std::map<std::uint32_t, std::vector<std::uint32_t>> find() {
+    std::map<std::uint32_t, std::vector<std::uint32_t>> result;
+    if (solids_.all().empty()) return result;
+    for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece) {
+      if (!may_meet_other_solid(piece)) continue;
+      std::vector<std::uint32_t> covers = covers_of(piece);
+      if (!covers.empty()) result.emplace(piece, std::move(covers));
+    }
+    return result;
+  }
+  [[nodiscard]] bool is_of_solid(std::uint32_t piece) const {
+    const std::uint32_t solid = solids_.of_piece(piece);
+    return solid != Solids::kNone && solids_.all()[solid].sign > 0;
+  }
+
+ private:
+  [[nodiscard]] Box box(std::uint32_t piece) const { return box_of(scene_, scene_.corners(pieces_[piece])); }
+
+  [[nodiscard]] bool may_meet_other_solid(std::uint32_t piece) const {
+    constexpr std::size_t kMany = 32;  // with more, the tree is asked at once
+    if (solids_.all().size() > kMany) return true;
+    const Box own = box(piece);
+    for (std::uint32_t s = 0; s < solids_.all().size(); ++s) {
+      if (s != solids_.of_piece(piece) && meet(solids_.all()[s].box, own)) return true;
+    }
+    return false;
+  }
+
+  // Calls take(other) for every other piece whose box meets this one's, and that overlaps it in its plane.
+  template <class Take>
+  void for_each_in_plane(std::uint32_t piece, const Take& take) const {
+    const auto vertex = [&](std::uint32_t v) -> const Vec3& { return scene_.vertices()[v]; };
+    const auto& frame = pieces_[piece].frame;
+    const kernel::PlaneThrough plane(vertex(frame[0]), vertex(frame[1]), vertex(frame[2]));
+    const Box own = box(piece);
+    shaft_tree(scene_).visit_where([&](const Box& node, std::size_t) { return meet(node, own); },
+                                   [&](std::uint32_t other, std::size_t) {
+                                     if (other == piece) return;
+                                     const Piece& of = pieces_[other];
+                                     const bool in_plane = std::ranges::all_of(
+                                         of.frame, [&](std::uint32_t v) { return plane.side_of(vertex(v)) == 0; });
+                                     if (in_plane && overlap(scene_, pieces_[piece], of)) take(other);
+                                   });
+  }
+
+  std::vector<std::uint32_t> covers_of(std::uint32_t piece) {
+    std::vector<std::uint32_t> covers, same;  // with the opposite front, and with the same one
+    for_each_in_plane(piece, [&](std::uint32_t other) {
+      (have_same_front(scene_, pieces_[piece], pieces_[other]) ? same : covers).push_back(other);
+    });
+    std::erase_if(covers, [&](std::uint32_t cover) { return solids_.of_piece(cover) == Solids::kNone; });
+    if (covers.empty()) return covers;
+    std::uint32_t own = solids_.of_piece(piece);
+    if (own == Solids::kNone) {
+      const auto twin = std::ranges::find_if(same, [&](std::uint32_t other) {
+        return solids_.of_piece(other) != Solids::kNone && have_same_corners(scene_, pieces_[piece], pieces_[other]);
+      });
+      if (twin != same.end()) own = solids_.of_piece(*twin);
+    }
+    std::erase_if(covers, [&](std::uint32_t cover) { return !buries(cover, piece, own); });
+    std::ranges::sort(covers);
+    return covers;
+  }
+
+  // Of a piece of this solid, or of none.
+  [[nodiscard]] bool buries(std::uint32_t cover, std::uint32_t piece, std::uint32_t own) {
+    const std::uint32_t by = solids_.of_piece(cover);
+    const int sign = solids_.all()[by].sign;
+    const bool is_of_positive = own != Solids::kNone && solids_.all()[own].sign > 0;
+    if (by == own || sign == 0 || (sign < 0 && !is_of_positive)) return false;
+    if (are_twins(cover, piece) && (own == Solids::kNone || is_other_side(by, own))) return false;
+    bool is_doubled = false;
+    for_each_in_plane(cover, [&](std::uint32_t other) {
+      is_doubled =
+          is_doubled || (solids_.of_piece(other) == by && !have_same_front(scene_, pieces_[cover], pieces_[other]));
+    });
+    return !is_doubled;
+  }
+
+  [[nodiscard]] FaceCorners corners_of(FaceId face) const {
+    FaceCorners corners;
+    for (const auto& ring : scene_.face(face).rings) {
+      for (const std::uint32_t v : ring) corners.push_back(places(scene_)[v]);
+    }
+    std::ranges::sort(corners);
+    return corners;
+  }
+  // Requires that they overlap in one plane.
+  [[nodiscard]] bool are_twins(std::uint32_t a, std::uint32_t b) const {
+    return have_same_corners(scene_, pieces_[a], pieces_[b]) ||
+           corners_of(pieces_[a].face) == corners_of(pieces_[b].face);
+  }
+  // Whether the faces of the two solids are the same but for their fronts.
+  [[nodiscard]] bool is_other_side(std::uint32_t a, std::uint32_t b) {
+    const auto [known, is_new] = other_sides_.try_emplace(std::minmax(a, b));
+    if (is_new) known->second = faces_of(a) == faces_of(b);
+    return known->second;
+  }
+  [[nodiscard]] std::set<FaceCorners> faces_of(std::uint32_t solid) const {
+    std::set<FaceCorners> faces;
+    for (const std::uint32_t piece : solids_.all()[solid].pieces) faces.insert(corners_of(pieces_[piece].face));
+    return faces;
+  }
+
+  const Scene& scene_;
+  const std::span<const Piece> pieces_;
+  const Solids solids_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> other_sides_;
+};
+
+// What a convex piece covers around a point, as seen along the normal of its front: nothing, everything, or a sector
+// of at most a half turn, counter-clockwise from `begin` to `end`.
+struct Sector {
+  enum class Part { kNothing, kSector, kEverything } part = Part::kNothing;
+  ExactVec3 begin, end;
+};
+
+// In a plane with this normal. The point is projected along it.
+class AroundPoint {
+ public:
+  AroundPoint(const Scene& scene, const Piece& piece, const Vec3& x)
+      : scene_(scene),
+        x_(x),
+        normal_(cross(edge(piece.frame[0], piece.frame[1]), edge(piece.frame[0], piece.frame[2]))) {}
+
+  // Whether the pieces, all with the same front, cover everything around the point.
+  [[nodiscard]] bool is_covered(std::span<const std::uint32_t> by) const {
+    std::vector<Sector> sectors;
+    for (const std::uint32_t piece : by) {
+      Sector sector = sector_of(scene_.corners(scene_.pieces()[piece]));
+      if (sector.part == Sector::Part::kEverything) return true;
+      if (sector.part == Sector::Part::kSector) sectors.push_back(std::move(sector));
+    }
+    // Where one ends, another goes on.
+    return !sectors.empty() && std::ranges::all_of(sectors, [&](const Sector& ending) {
+      return std::ranges::any_of(sectors, [&](const Sector& other) { return goes_on(other, ending.end); });
+    });
+  }
+
+ private:
+  [[nodiscard]] ExactVec3 edge(std::uint32_t from, std::uint32_t to) const {
+    return kernel::exact_difference(scene_.vertices()[to], scene_.vertices()[from]).v;
+  }
+  [[nodiscard]] int turn(const ExactVec3& from, const ExactVec3& to) const {
+    return sgn(dot(cross(from, to), normal_));
+  }
+
+  [[nodiscard]] Sector sector_of(std::span<const std::uint32_t> corners) const {
+    Sector sector;
+    sector.part = Sector::Part::kEverything;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const ExactVec3 along = edge(corners[i], corners[i + 1 == corners.size() ? 0 : i + 1]);
+      const int side = turn(along, kernel::exact_difference(x_, scene_.vertices()[corners[i]]).v);
+      if (side < 0) return {};
+      if (side > 0) continue;
+      // On this edge, or at the corner with another one.
+      ExactVec3 back = along;
+      negate(back);
+      if (sector.part == Sector::Part::kEverything) {
+        sector = {Sector::Part::kSector, along, std::move(back)};
+      } else if (const int order = turn(sector.begin, along); order > 0) {
+        sector.begin = along;
+      } else if (order < 0) {
+        sector.end = std::move(back);
+      }
+    }
+    return sector;
+  }
+  // Whether the sector covers what follows the direction, counter-clockwise.
+  [[nodiscard]] bool goes_on(const Sector& sector, const ExactVec3& direction) const {
+    const int from = turn(sector.begin, direction), to = turn(direction, sector.end);
+    if (from == 0) return sgn(dot(sector.begin, direction)) > 0;
+    return from > 0 && (to > 0 || turn(sector.begin, sector.end) == 0);
+  }
+
+  const Scene& scene_;
+  const Vec3& x_;
+  ExactVec3 normal_;
+};
+
+}  // namespace
+
+Contacts::Contacts(const Scene& scene) {
+  ContactFinder finder(scene);
+  covers_ = finder.find();
+  if (covers_.empty()) return;
+  is_cover_.assign(scene.pieces().size(), 0);
+  is_of_solid_.assign(scene.pieces().size(), 0);
+  for (std::uint32_t piece = 0; piece < is_of_solid_.size(); ++piece) {
+    is_of_solid_[piece] = finder.is_of_solid(piece) ? 1 : 0;
+  }
+  for (const auto& [piece, covers] : covers_) {
+    for (const std::uint32_t cover : covers) is_cover_[cover] = 1;
+  }
+}
+
+std::span<const std::uint32_t> Contacts::covers(std::uint32_t piece) const {
+  const auto found = covers_.find(piece);
+  return found == covers_.end() ? std::span<const std::uint32_t>() : found->second;
+}
+
+int Contacts::rank(const Side& side) const {
+  if (empty()) return 0;
+  if (!side.front) return is_cover_[side.piece] != 0 ? 0 : 1;
+  return covers(side.piece).empty() ? 0 : 1 + is_of_solid_[side.piece];
+}
+
+bool Contacts::comes_first(const Side& a, const Side& b) const {
+  if (a.front == b.front) {
+    const int of_a = rank(a), of_b = rank(b);
+    return of_a != of_b ? of_a < of_b : a.piece < b.piece;
+  }
+  const auto& [front, back] = a.front ? std::pair(a, b) : std::pair(b, a);
+  const bool is_buried = !empty() && std::ranges::binary_search(covers(front.piece), back.piece);
+  return a.front != is_buried;
+}
+
+const Contacts& contacts(const Scene& scene) {
+  const SceneInside::Data& data = SceneInside::data(scene);
+  std::call_once(data.contacts_found, [&] { data.contacts = Contacts(scene); });
+  return data.contacts;
+}
+
+namespace {
+
+// Of a face, what its pieces in the plane of this one are covered by. A point may lie on the common side of two.
+std::vector<std::uint32_t> covers_in_plane(const Scene& scene, const Face& face, std::uint32_t piece) {
+  const std::uint32_t first = face.shape == FaceShape::kPlanar ? face.first_piece : piece;
+  const std::uint32_t last = face.shape == FaceShape::kPlanar ? face.first_piece + face.piece_count : piece + 1;
+  std::vector<std::uint32_t> result;
+  for (std::uint32_t p = first; p < last; ++p) {
+    const auto covers = contacts(scene).covers(p);
+    result.insert(result.end(), covers.begin(), covers.end());
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<FaceId> buried_under(const Scene& scene, std::span<const FaceId> on, const Vec3& point,
+                                   const Vec3& normal) {
+  if (on.empty() || contacts(scene).empty()) return std::nullopt;
+  for (const FaceId id : on) {
+    const Face& face = scene.face(id);
+    for (std::uint32_t piece = face.first_piece; piece < face.first_piece + face.piece_count; ++piece) {
+      const auto covers = contacts(scene).covers(piece);
+      if (covers.empty()) continue;
+      const auto at = [&](int i) -> const Vec3& { return scene.vertices()[scene.pieces()[piece].frame[i]]; };
+      if (kernel::exact_sign_of_det({at(0), at(1)}, {at(0), at(2)}, {Vec3{}, normal}) <= 0) continue;
+      const AroundPoint around(scene, scene.pieces()[covers.front()], point);
+      if (around.is_covered(covers_in_plane(scene, face, piece))) return scene.pieces()[covers.front()].face;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace exactff

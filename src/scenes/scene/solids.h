@@ -1,0 +1,43 @@
+// Closed surfaces, told apart where they touch.
+//
+// At every edge, faces are paired across the wedge behind them: from a face, one turns round the edge, on the side of
+// its back, to the face that ends the wedge. So two boxes that share edges are two solids, and so are a room and the
+// box in its corner. A solid is a set of pieces that pairs connect, with every edge of each of them paired. Edges are
+// matched by the positions of their ends, and cut at T-junctions where they are not paired whole. Transparent pieces
+// belong to no solid.
+//
+// A solid of positive volume has its fronts outside, as a box has. One of negative volume has them inside, as a room
+// has. That of a sheet with two faces has no volume.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "exactff/scene.h"
+#include "scene/shaft_tree.h"
+
+namespace exactff {
+
+struct Solid {
+  Box box;
+  int sign = 0;  // of its volume, exact
+  std::vector<std::uint32_t> pieces;
+};
+
+class Solids {
+ public:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+  explicit Solids(const Scene& scene);
+
+  [[nodiscard]] std::span<const Solid> all() const { return solids_; }
+  // The index of a piece's solid, or kNone.
+  [[nodiscard]] std::uint32_t of_piece(std::uint32_t piece) const { return of_piece_[piece]; }
+
+ private:
+  std::vector<Solid> solids_;
+  std::vector<std::uint32_t> of_piece_;
+};
+
+}  // namespace exactff
