@@ -298,6 +298,144 @@ TEST_P(Contacts, MatricesAreMeansOverWhatIsExposed) {
   }
 }
 
+// --- Single cases ---
+
+enum class Fronts { kOutside, kInside };
+
+// Six faces of a patch. Vertices at one position are shared if `shared`.
+struct Builder {
+  SceneBuilder builder;
+  MaterialId material = builder.add_material({});
+  bool shares = false;
+  std::map<std::array<double, 3>, std::uint32_t> known;
+
+  std::uint32_t vertex(const Vec3& v) {
+    if (!shares) return builder.add_vertex(v);
+    const auto [place, is_new] = known.try_emplace({v.x, v.y, v.z});
+    if (is_new) place->second = builder.add_vertex(v);
+    return place->second;
+  }
+  void add_face(const std::string& patch, std::vector<Vec3> corners) {
+    std::vector<std::uint32_t> ring;
+    for (const Vec3& corner : corners) ring.push_back(vertex(corner));
+    builder.add_face(builder.patch(patch), material, {ring});
+  }
+  void add_box(const std::string& patch, const Vec3& a, const Vec3& b, Fronts fronts = Fronts::kOutside) {
+    const Vec3 c[] = {a, {b.x, a.y, a.z}, {b.x, b.y, a.z}, {a.x, b.y, a.z}, {a.x, a.y, b.z}, {b.x, a.y, b.z},
+                      b, {a.x, b.y, b.z}};
+    for (const auto& side :
+         {std::array{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {2, 3, 7, 6}, {1, 2, 6, 5}, {3, 0, 4, 7}}) {
+      std::vector<Vec3> corners;
+      for (const int i : side) corners.push_back(c[i]);
+      if (fronts == Fronts::kInside) std::ranges::reverse(corners);
+      add_face(patch, corners);
+    }
+  }
+};
+constexpr int kBottom = 1, kTop = 2;  // faces of add_box, from 1
+
+// Whether the middle of the face is buried.
+bool is_buried(const Scene& scene, const std::string& name) {
+  const FaceId face = *scene.select(name).face;
+  return buried_under(scene, centre_receivers(scene, std::vector{face}).front()).has_value();
+}
+std::string face_of(const std::string& patch, int number) { return patch + ':' + std::to_string(number); }
+
+TEST(BuriedFaces, AreBothSidesOfTheContactOfEqualBoxes) {
+  for (const bool shares : {false, true}) {
+    Builder made{.shares = shares};
+    made.add_box("lower", {0, 0, 0}, {1, 1, 1});
+    made.add_box("upper", {0, 0, 1}, {1, 1, 2});
+    const Scene scene = made.builder.build();
+    EXPECT_TRUE(is_buried(scene, face_of("lower", kTop)));
+    EXPECT_TRUE(is_buried(scene, face_of("upper", kBottom)));
+    EXPECT_FALSE(is_buried(scene, face_of("lower", kBottom)));
+    EXPECT_FALSE(is_buried(scene, face_of("upper", kTop)));
+  }
+}
+
+TEST(BuriedFaces, AreThreeSidesOfABoxInTheCornerOfARoom) {
+  for (const bool shares : {false, true}) {
+    Builder made{.shares = shares};
+    made.add_box("room", {0, 0, 0}, {4, 4, 4}, Fronts::kInside);
+    made.add_box("box", {0, 0, 0}, {1, 1, 1});
+    const Scene scene = made.builder.build();
+    int buried = 0;
+    for (int face = 1; face <= 6; ++face) buried += is_buried(scene, face_of("box", face)) ? 1 : 0;
+    EXPECT_EQ(buried, 3);
+    EXPECT_TRUE(buried_under(scene, {{0.5, 0.5, 0}, {0, 0, 1}, {scene.faces_of(scene.select("room"))[0]}, {}}));
+    EXPECT_FALSE(buried_under(scene, {{1.5, 0.5, 0}, {0, 0, 1}, {scene.faces_of(scene.select("room"))[0]}, {}}));
+  }
+}
+
+TEST(BuriedFaces, AreTheFloorUnderABoxButNotItsBottomOnASheet) {
+  Builder made;
+  made.add_face("floor", {{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
+  made.add_box("box", {-1, -1, 0}, {1, 1, 1});
+  const Scene scene = made.builder.build();
+  EXPECT_TRUE(is_buried(scene, "floor:1"));
+  EXPECT_FALSE(is_buried(scene, face_of("box", kBottom)));
+  EXPECT_FALSE(some_is_buried(scene.with_transparent(std::vector{scene.select("box:4")})));
+}
+
+TEST(BuriedFaces, AreNotThePartyWallsOfRooms) {
+  for (const double height : {3.0, 2.0}) {
+    Builder made;
+    made.add_box("one", {0, 0, 0}, {4, 4, 3}, Fronts::kInside);
+    made.add_box("other", {4, 0, 0}, {8, 4, height}, Fronts::kInside);
+    EXPECT_FALSE(some_is_buried(made.builder.build()));
+  }
+}
+
+TEST(BuriedFaces, AreNotTheSidesOfASheetOrOfATwoSidedRoom) {
+  Builder lamp;
+  lamp.add_face("up", {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}});
+  lamp.add_face("down", {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}});
+  EXPECT_FALSE(some_is_buried(lamp.builder.build()));
+  Builder made;
+  made.add_box("room", {0, 0, 0}, {4, 4, 3}, Fronts::kInside);
+  const Scene room = made.builder.build();
+  EXPECT_FALSE(some_is_buried(matrix::with_two_sided(room, std::vector{room.select("room")})));
+  for (int face = 1; face <= 6; ++face) {
+    EXPECT_FALSE(some_is_buried(matrix::with_two_sided(room, std::vector{room.select(face_of("room", face))})));
+  }
+}
+
+TEST(BuriedFaces, OfFurnitureAreTheSameInATwoSidedRoom) {
+  Builder made;
+  made.add_box("room", {0, 0, 0}, {4, 4, 3}, Fronts::kInside);
+  made.add_box("box", {1, 1, 0}, {2, 2, 1});
+  const Scene room = made.builder.build();
+  for (const std::string two_sided : {"room", "room:1", "box"}) {
+    const Scene scene = matrix::with_two_sided(room, std::vector{room.select(two_sided)});
+    EXPECT_TRUE(is_buried(scene, face_of("box", kBottom))) << two_sided;
+    const FaceId floor = scene.faces_of(scene.select("room")).front();
+    EXPECT_TRUE(buried_under(scene, {{1.5, 1.5, 0}, {0, 0, 1}, {floor}, {}})) << two_sided;
+  }
+}
+
+// The cover is made of two triangles; what is buried is open.
+TEST(BuriedFaces, HoldTheCommonSideOfTwoCoversAndNotTheirBoundary) {
+  Builder made;
+  made.add_face("floor", {{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
+  const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{1, 1, 0}, d{0, 1, 0}, top{0.5, 0.5, 1};
+  made.add_face("pyramid", {a, c, b});
+  made.add_face("pyramid", {a, d, c});
+  for (const auto& [p, q] : {std::pair(a, b), {b, c}, {c, d}, {d, a}}) made.add_face("pyramid", {p, q, top});
+  const Scene scene = made.builder.build();
+  const std::vector<FaceId> floor = scene.faces_of(scene.select("floor"));
+  const auto is_buried_at = [&](double x, double y) {
+    return buried_under(scene, {{x, y, 0}, {0, 0, 1}, floor, {}}).has_value();
+  };
+  EXPECT_TRUE(is_buried_at(0.5, 0.5));
+  EXPECT_TRUE(is_buried_at(0.25, 0.25));
+  for (const auto& [x, y] : {std::pair(0.0, 0.0), {0.5, 0.0}, {1.0, 0.5}, {1.0, 1.0}, {0.0, 0.5}, {-0.5, 0.5}}) {
+    EXPECT_FALSE(is_buried_at(x, y)) << x << ' ' << y;
+  }
+  EXPECT_FALSE(buried_under(scene, {{0.5, 0.5, 0}, {0, 0, -1}, floor, {}})) << "it looks from the back";
+  EXPECT_FALSE(buried_under(scene, {{0.5, 0.5, 0}, {0, 0, 1}, {}, {}})) << "it lies on no face";
+}
+
 INSTANTIATE_TEST_SUITE_P(InARoom, Contacts, testing::Values(true));
 INSTANTIATE_TEST_SUITE_P(OnTheGround, Contacts, testing::Values(false));
 

@@ -324,7 +324,7 @@ ViewFactor bounds_of_share(Random& random, int part, int whole, double width) {
 
 matrix::Matrix matrix_of(Random& random, const Scene& scene, const Exchange& exchange, double width) {
   const std::vector<Selection> patches = patches_of(scene);
-  matrix::Matrix matrix{{patches, patches, {}}, {}, {}};
+  matrix::Matrix matrix{{patches, patches, {}}, {}, {}, {}};
   for (std::size_t i = 0; i < exchange.size(); ++i) {
     const int area = exchange.area(i);
     for (const int w : exchange.between[i]) matrix.factors.entries.push_back(bounds_of_share(random, w, area, width));

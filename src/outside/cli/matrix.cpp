@@ -269,7 +269,7 @@ void check_content(const MatrixArguments& args, const Scene& scene, const std::v
                    const std::vector<Selection>& to) {
   check_row_of_vtk(args, from, to);
   check_overlaps(args, scene, to);
-  const matrix::Matrix empty{{from, to, std::vector<ViewFactor>(from.size() * to.size())}, {}, {}};
+  const matrix::Matrix empty{{from, to, std::vector<ViewFactor>(from.size() * to.size())}, {}, {}, {}};
   if (!args.view3d.empty()) (void)view3d_text(scene, empty);
   if (!args.energyplus.empty()) (void)energyplus_text(scene, empty, args.zone);
 }

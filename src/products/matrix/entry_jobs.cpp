@@ -94,9 +94,9 @@ void EntryJobs::compute(std::size_t job, const std::function<void(std::size_t, c
 
 ViewFactor EntryJobs::computed(Column column, std::size_t row) const {
   switch (column) {
-    case Column::kBack:
+    case Column::kOfBacks:
       return to_backs_->of_row(row);
-    case Column::kOpen:
+    case Column::kOfSky:
       return to_sky_->of_row(row);
     default:
       return buried_share(pairs_.exposed_share(row));
@@ -104,9 +104,9 @@ ViewFactor EntryJobs::computed(Column column, std::size_t row) const {
 }
 
 EntryJobs::Column EntryJobs::kind_of(std::size_t column) const {
-  if (column < to_.size()) return Column::kPatch;
-  if (has_buried_ && column + 1 == width_) return Column::kBuried;
-  return to_backs_ && column == to_.size() ? Column::kBack : Column::kOpen;
+  if (column < to_.size()) return Column::kOfPatch;
+  if (has_buried_ && column + 1 == width_) return Column::kOfBuried;
+  return to_backs_ && column == to_.size() ? Column::kOfBacks : Column::kOfSky;
 }
 
 std::string EntryJobs::slow_of_thread(double seconds) {
@@ -116,8 +116,8 @@ std::string EntryJobs::slow_of_thread(double seconds) {
 
 std::string EntryJobs::name_of_column(std::size_t column) const {
   const Column kind = kind_of(column);
-  if (kind == Column::kPatch) return scene_.name_of(to_[column]);
-  return std::string(kind == Column::kBack ? kBack : kind == Column::kOpen ? kOpen : kBuried);
+  if (kind == Column::kOfPatch) return scene_.name_of(to_[column]);
+  return std::string(kind == Column::kOfBacks ? kBack : kind == Column::kOfSky ? kOpen : kBuried);
 }
 
 std::string EntryJobs::name(std::size_t job) const {
@@ -128,7 +128,7 @@ std::string EntryJobs::name(std::size_t job) const {
 
 void EntryJobs::append_csv(std::string& text, std::size_t entry, const ViewFactor& f) const {
   const std::size_t column = entry % width_;
-  const bool has_area = kind_of(column) == Column::kPatch || kind_of(column) == Column::kBack;
+  const bool has_area = kind_of(column) == Column::kOfPatch || kind_of(column) == Column::kOfBacks;
   add_csv_row(text, scene_.name_of(from_[entry / width_]), name_of_column(column), f,
               has_area ? std::optional(f.area_to) : std::nullopt);
 }

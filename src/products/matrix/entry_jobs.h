@@ -35,7 +35,7 @@ class EntryJobs {
   void append_csv(std::string& text, std::size_t entry, const ViewFactor& factor) const;
 
  private:
-  enum class Column { kPatch, kBack, kOpen, kBuried };
+  enum class Column { kOfPatch, kOfBacks, kOfSky, kOfBuried };
   [[nodiscard]] Column kind_of(std::size_t column) const;
   [[nodiscard]] std::string name_of_column(std::size_t column) const;
   [[nodiscard]] ViewFactor computed(Column column, std::size_t row) const;

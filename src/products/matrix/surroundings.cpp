@@ -17,7 +17,7 @@
 #include "view_factors/pairs.h"
 #include "visibility/source_plane.h"
 
-namespace exactff {
+namespace exactff::matrix {
 namespace {
 
 std::vector<std::uint32_t> corners_of(const Scene& scene, const Piece& piece) {
@@ -332,4 +332,4 @@ bool have_fronts_in_common(const Scene& scene) {
   return false;
 }
 
-}  // namespace exactff
+}  // namespace exactff::matrix

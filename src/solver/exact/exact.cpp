@@ -188,7 +188,7 @@ class Solver {
     if (wants_gradient_) start_gradient();
     for (std::size_t p = 0; p < planes_.size(); ++p) {
       PlaneVisibility seen = find(planes_[p]);
-      if (wants_gradient_) {
+      if (wants_gradient_ && !view_.is_buried) {
         memory_.gradient->add({view_, planes_[p], request_}, seen.boundary);
       } else {
         memory_.quick.add(seen.boundary);
@@ -199,7 +199,7 @@ class Solver {
     if (something_visible_ && !sum_is_certain()) integrate_in_balls();
     exact::set_bounds(result_);
     if (wants_gradient_) find_gradient();
-    if (options_.vertices) find_vertices();
+    if (options_.vertices && !view_.is_buried) find_vertices();
     if (wants_fraction_) set_fraction(shares_, result_);
   }
 
