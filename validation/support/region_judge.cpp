@@ -15,7 +15,7 @@
 #include "exactff/render.h"
 #include "exactff/view.h"
 #include "kernel/exact_vec.h"
-#include "matrix/coplanar.h"
+#include "scene/coplanar.h"
 #include "support/picture_areas.h"
 
 namespace exactff::validation {
@@ -174,7 +174,7 @@ bool share_points(const Scene& scene, const Piece& a, const Piece& b) {
   const bool in_one_plane = std::ranges::all_of(b.frame, [&](std::uint32_t v) {
     return kernel::orientation(at(a.frame[0]), at(a.frame[1]), at(a.frame[2]), at(v)) == 0;
   });
-  return in_one_plane && matrix::overlap(scene, a, b);
+  return in_one_plane && overlap(scene, a, b);
 }
 
 // In its plane.
