@@ -82,11 +82,11 @@ struct Reciprocity {
 [[nodiscard]] Reciprocity reciprocity(const Scene& scene, const Matrix& matrix);
 
 // The scene with the backs of these patches or faces as patches of their own, named "NAME (back)": every face has a
-// twin in its plane that is turned round and has the same material. A face in several selections gets one twin. All
-// patches and faces of `scene` keep their ids. Coplanar faces hide nothing from each other, so every other factor
-// is the same number, and what met the backs meets the twins. Its interval may be another one, since twins take part in
-// the search for what hides something. Throws InputError for a face that is not planar, and if there is a patch of such
-// a name.
+// twin in its place that is turned round and has the same material; a face that is not planar and its twin consist of
+// the same triangles. A face in several selections gets one twin. All patches and faces of `scene` keep their ids.
+// Coplanar faces hide nothing from each other, so every other factor is the same number, and what met the backs meets
+// the twins. Its interval may be another one, since twins take part in the search for what hides something. Throws
+// InputError if there is a patch of such a name.
 [[nodiscard]] Scene with_two_sided(const Scene& scene, std::span<const Selection> selections);
 
 // The weaker of two claims, the one to be made of a sum.

@@ -139,8 +139,13 @@ class Scene {
   // closest patch names if nothing matches.
   [[nodiscard]] Selection select(std::string_view name) const;
   // The same, and if no patch is called NAME, all patches NAME:1, NAME:2, ... and NAME:k:1, ...: the cells of a divided
-  // patch, or the faces of PatchMode::kFaces.
+  // patch, or the faces of PatchMode::kFaces. If there are none, and the text is a pattern, all patches whose names
+  // match it, as fnmatch(3) says: * stands for any text, ? for one character, [...] for one of several, and \ makes the
+  // next character an ordinary one. If no patch matches, all faces NAME:k that do. Patches without area are left out if
+  // others match. In the order of the file.
   [[nodiscard]] std::vector<Selection> select_all(std::string_view name) const;
+  // Whether the text has one of the characters * ? [.
+  [[nodiscard]] static bool is_pattern(std::string_view name);
   [[nodiscard]] std::string name_of(const Selection& selection) const;
   [[nodiscard]] std::string name_of(FaceId face) const;  // "NAME:k", or "NAME" for a patch of one face
   // Faces of one patch: "NAME:1+2", in their order; "" for none.
@@ -250,6 +255,11 @@ struct DividedScene {
 // that is not positive or that would make more than 4 million cells, and if a patch has a name that a cell of another
 // could have.
 [[nodiscard]] DividedScene divided(const Scene& scene, double length);
+
+// Every face cut into triangles at its own vertices: a face that is not planar into those that it stands for (see
+// SceneBuilder). Patches, materials and what is transparent stay, and so does every form factor between patches. Faces
+// are numbered anew; those without area, and skipped ones, are left out.
+[[nodiscard]] Scene triangulated(const Scene& scene);
 
 // What a scene contains, patch by patch: the rows of `exactff info`. For people who look at a scene; estimates.
 struct PatchSummary {

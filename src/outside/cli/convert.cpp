@@ -27,6 +27,9 @@ constexpr const char* kConvertFooter =
     "closed surfaces stay closed. Corners are rounded to doubles; how far they are off at most is printed. Cells that "
     "are\n"
     "not exactly planar then are cut into triangles.\n"
+    "--triangulate cuts all faces into triangles. A face that is not exactly planar becomes the triangles that "
+    "exactff\n"
+    "takes it for.\n"
     "\n"
     "Example:\n"
     "  exactff convert room.obj room.ply\n"
@@ -37,8 +40,10 @@ struct ConvertArguments {
   flags::SceneArguments scene;
   std::string out;
   std::string encoding;
+  bool triangulate = false;
   bool force = false;
 
+  [[nodiscard]] Scene load() const { return triangulate ? triangulated(scene.load()) : scene.load(); }
   [[nodiscard]] Encoding chosen_encoding() const {
     return encoding.empty() ? Encoding::kDefault : encoding == "text" ? Encoding::kText : Encoding::kBinary;
   }
@@ -46,7 +51,7 @@ struct ConvertArguments {
 
 int run(const ConvertArguments& args) {
   require_free_file(args.out, args.force);  // checked before anything that takes time
-  const Scene scene = args.scene.load();
+  const Scene scene = args.load();
   print_warnings(scene.warnings());
   const SceneFiles result = scene_files(scene, args.out, args.chosen_encoding());
   for (const SceneFiles::File& file : result.files) require_free_file(file.path, args.force);
@@ -66,6 +71,7 @@ Command add_convert(CLI::App& app) {
   args->scene.add_to(*command);
   args->scene.add_divide_to(*command);
   command->add_option("OUT", args->out, "File to write: .obj, .ply, .stl, .off or .vs3")->required();
+  command->add_flag("--triangulate", args->triangulate, "Cut all faces into triangles, at their own vertices");
   command->add_option("--encoding", args->encoding, "Form of PLY (otherwise binary) and STL (otherwise text)")
       ->check(CLI::IsMember({"text", "binary"}));
   command->add_flag("--force", args->force, "Replace existing files");

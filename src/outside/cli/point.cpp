@@ -160,8 +160,9 @@ void add_receiver_flags(CLI::App& app, PointArguments& args) {
   args.receiver.add_to(app);
   app.add_option(
          "--source", args.sources,
-         "Source patch or face; can be repeated, or separate names by commas; all: a table of every patch, with "
-         "the sum and what is missing to 1 (default: every emitting patch, and their sum)")
+         std::string("Source patch or face") + flags::kNamesHelp +
+             "; all: a table of every patch, with the sum and what is missing to 1 (default: every emitting patch, and "
+             "their sum)")
       ->type_name("NAME[:K]");
   app.add_option(
          "--reflectance", args.reflectance,

@@ -33,6 +33,6 @@ inline constexpr const char* kBudgetHelp =
     "Limit of work for an entry: the most cells, where one with many edges counts for several, and the most points";
 
 inline constexpr const char* kTwoSidedHelp =
-    "Patches or faces whose backs are patches as well, NAME (back), with the same Kd and Ke";
+    "Patches or faces, named as in --from, whose backs are patches as well, NAME (back), with the same Kd and Ke";
 
 }  // namespace exactff::cli

@@ -7,9 +7,10 @@
 namespace exactff::flags {
 namespace {
 
+// Whether the text with its commas is one name. A pattern is not: its parts are.
 bool is_a_name(const Scene& scene, const std::string& text) {
   try {
-    (void)scene.select_all(text);
+    (void)(Scene::is_pattern(text) ? std::vector{scene.select(text)} : scene.select_all(text));
     return true;
   } catch (const InputError&) {
     return false;
@@ -29,8 +30,10 @@ bool means_all(const Scene& scene, const std::string& name) {
 
 void add(const Scene& scene, const std::string& name, std::vector<Selection>& selections) {
   if (means_all(scene, name)) return add_all(scene, selections);
-  const std::vector<Selection> parts = scene.select_all(name);
-  selections.insert(selections.end(), parts.begin(), parts.end());
+  for (const Selection& part : scene.select_all(name)) {
+    if (Scene::is_pattern(name) && std::ranges::find(selections, part) != selections.end()) continue;
+    selections.push_back(part);
+  }
 }
 
 }  // namespace

@@ -26,10 +26,13 @@ std::optional<Whole> whole_number(std::string_view text) {
 // A check of a flag's value.
 [[nodiscard]] std::string is_positive(const std::string& text);
 
-// In the order of `texts`. Each of them is a name, which may stand for the cells of a divided patch
-// (Scene::select_all), a comma list of names, or "all": every patch with area, in the order of the file. A patch, or
-// the cells of a divided one, with exactly the given name has priority, even if its name is "all" or contains a comma.
-// Throws InputError for an unknown name.
+// What the help of such a flag says.
+inline constexpr const char* kNamesHelp = "; can be repeated, or separate names by commas; * ? [...] as in file names";
+
+// In the order of `texts`. Each of them is a name or pattern, which may stand for several patches (Scene::select_all),
+// a comma list of them, or "all": every patch with area, in the order of the file. A patch, or the cells of a divided
+// one, with exactly the given name has priority, even if its name is "all" or contains a comma. What a pattern matches
+// is left out if it is among the selections before. Throws InputError for an unknown name.
 std::vector<Selection> selections_named(const Scene& scene, const std::vector<std::string>& texts);
 
 // Takes "sky" out of the texts, if it is among them and is not the name of a patch.

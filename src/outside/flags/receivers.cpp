@@ -187,10 +187,9 @@ std::optional<AutoFace> auto_face(const std::string& on, const Scene& scene) {
 }
 
 void add_receiver_options(CLI::App& app, ReceiverArguments& args) {
-  app.add_option(
-         "--on", args.on,
-         "Patch or face on which the receivers lie; can be repeated, or separate names by commas; all: every patch; "
-         "with --receivers: auto or auto:DISTANCE finds the face of each receiver")
+  app.add_option("--on", args.on,
+                 std::string("Patch or face on which the receivers lie") + kNamesHelp +
+                     "; all: every patch; with --receivers: auto or auto:DISTANCE finds the face of each receiver")
       ->type_name("NAME[:K]")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -14,7 +14,7 @@ namespace {
 
 CLI::Option* add_names(CLI::App& app, const std::string& flag, std::vector<std::string>& names,
                        const std::string& meaning) {
-  return app.add_option(flag, names, meaning + "; can be repeated, or separate names by commas")
+  return app.add_option(flag, names, meaning + kNamesHelp)
       ->type_name("NAME[:K]")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -24,7 +24,7 @@ void refuse_sky(const Scene& scene, std::vector<std::string> names) {
 
 void add_option(CLI::App& app, SourceArguments& args, const std::string& sky) {
   app.add_option("--source", args.names,
-                 "Source patch or face; can be repeated, or separate names by commas; all: every patch" + sky +
+                 std::string("Source patch or face") + kNamesHelp + "; all: every patch" + sky +
                      " (default: every emitting patch)")
       ->type_name("NAME[:K]")
       ->expected(1)

@@ -19,13 +19,6 @@ std::string name_of_back(const Scene& scene, const Selection& selection) {
   return name;
 }
 
-// At a point of a bent face its other triangles hide nothing, but those of a twin would.
-void require_planar(const Scene& scene, FaceId face) {
-  if (scene.face(face).shape == FaceShape::kPlanar) return;
-  text::refuse("face " + scene.name_of(face) + " is not planar and cannot be two-sided",
-               "its triangles would be hidden by those of its back", "cut it into triangles in the scene file");
-}
-
 }  // namespace
 
 Scene with_two_sided(const Scene& scene, std::span<const Selection> selections) {
@@ -37,10 +30,7 @@ Scene with_two_sided(const Scene& scene, std::span<const Selection> selections) 
     std::erase_if(faces, [&](FaceId face) { return !doubled.insert(face).second; });
     if (faces.empty()) continue;
     const Selection back = copy.add_patch(name_of_back(scene, selection));
-    for (const FaceId face : faces) {
-      require_planar(scene, face);
-      copy.add_twin(back, scene.face(face));
-    }
+    for (const FaceId face : faces) copy.add_twin(back, scene.face(face));
   }
   return copy.take();
 }

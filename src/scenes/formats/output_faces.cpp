@@ -1,7 +1,6 @@
 #include "formats/output_faces.h"
 
-#include "kernel/expect.h"
-#include "scene/ear_clipping.h"
+#include "scene/triangles.h"
 #include "text/phrases.h"
 
 namespace exactff::formats {
@@ -80,29 +79,17 @@ void FaceCollector::add_without_area(FaceId id) {
   faces_.push_back({id, std::move(corners)});
 }
 
-// Some corners of a convex piece may be on a straight side, so a fan from one corner would not do.
-std::vector<Corners> triangles_of(const Scene& scene, const Corners& piece) {
-  const FacePoints points = face_points(scene.vertices(), {piece});
-  const PlanePoints plane(points, newell(points, 0, points.size()), PlanePoints::Projection::kDropAxis);
-  const auto triangles = clip_ears(plane, points.vertex);
-  EXACTFF_EXPECT(triangles.has_value());
-  std::vector<Corners> result;
-  for (const auto& [a, b, c] : *triangles) result.push_back({piece[a], piece[b], piece[c]});
-  return result;
-}
-
 void FaceCollector::add_pieces(FaceId id) {
   const std::size_t most = polygons_ == Polygons::kAny           ? static_cast<std::size_t>(-1)
                            : polygons_ == Polygons::kFourCorners ? 4
                                                                  : 3;
   for (const Piece& piece : scene_.pieces_of(id)) {
     const auto corners = scene_.corners(piece);
-    Corners ring(corners.begin(), corners.end());
-    if (ring.size() <= most) {
-      faces_.push_back({id, std::move(ring)});
+    if (corners.size() <= most) {
+      faces_.push_back({id, Corners(corners.begin(), corners.end())});
       continue;
     }
-    for (Corners& triangle : triangles_of(scene_, ring)) faces_.push_back({id, std::move(triangle)});
+    for (Corners& triangle : triangles_of(scene_, piece)) faces_.push_back({id, std::move(triangle)});
   }
 }
 

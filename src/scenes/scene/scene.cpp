@@ -1,5 +1,7 @@
 #include "exactff/scene.h"
 
+#include <fnmatch.h>
+
 #include <algorithm>
 #include <atomic>
 #include <numeric>
@@ -114,17 +116,46 @@ bool is_part_of(const std::string& name, std::string_view whole) {
   return false;
 }
 
-}  // namespace
+template <class IsWanted>
+std::vector<Selection> selections_of_patches(const Scene& scene, const IsWanted& is_wanted) {
+  std::vector<Selection> found;
+  for (std::size_t p = 0; p < scene.patches().size(); ++p) {
+    if (is_wanted(scene.patches()[p].name)) found.push_back({static_cast<PatchId>(p), {}, scene.id()});
+  }
+  return found;
+}
 
-std::vector<Selection> Scene::select_all(std::string_view name) const {
-  std::vector<Selection> parts;
-  if (!data().patch_by_name.contains(std::string(name))) {
-    for (std::size_t p = 0; p < patches().size(); ++p) {
-      if (is_part_of(patches()[p].name, name)) parts.push_back({static_cast<PatchId>(p), {}, id()});
+// Patches whose names match; if there are none, faces NAME:k. Those without area only if no other matches.
+std::vector<Selection> selections_like(const Scene& scene, std::string_view text) {
+  const std::string pattern = text::is_utf8(text) ? std::string(text) : text::in_utf8(text);
+  const auto matches = [&](const std::string& name) { return fnmatch(pattern.c_str(), name.c_str(), 0) == 0; };
+  std::vector<Selection> found = selections_of_patches(scene, matches);
+  if (found.empty()) {
+    for (std::size_t f = 0; f < scene.faces().size(); ++f) {
+      const Selection face{scene.faces()[f].patch, static_cast<FaceId>(f), scene.id()};
+      if (scene.face(*face.face).shape != FaceShape::kSkipped && matches(scene.name_of(face))) found.push_back(face);
     }
   }
-  if (parts.empty()) parts.push_back(select(name));
-  return parts;
+  const auto has_area = [&](const Selection& selection) { return !scene.faces_of(selection).empty(); };
+  if (std::ranges::any_of(found, has_area)) std::erase_if(found, [&](const Selection& s) { return !has_area(s); });
+  return found;
+}
+
+}  // namespace
+
+bool Scene::is_pattern(std::string_view name) { return name.find_first_of("*?[") != std::string_view::npos; }
+
+std::vector<Selection> Scene::select_all(std::string_view name) const {
+  if (data().patch_by_name.contains(std::string(name))) return {select(name)};
+  std::vector<Selection> found =
+      selections_of_patches(*this, [&](const std::string& patch) { return is_part_of(patch, name); });
+  if (!found.empty()) return found;
+  if (!is_pattern(name)) return {select(name)};
+  found = selections_like(*this, name);
+  if (!found.empty()) return found;
+  throw InputError({data().file, 0, "no patch or face has a name like " + text::in_quotes(name, text::kShownName),
+                    "* stands for any text, ? for one character, [...] for one of several",
+                    choice_of_names(*this, name)});
 }
 
 std::string Scene::name_of(const Selection& selection) const {

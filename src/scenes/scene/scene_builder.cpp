@@ -236,7 +236,7 @@ void SceneBuilder::State::warn_out_of_plane(const Face& face) {
                 quoted(face) + " is out of plane by " + two_digits(face.out_of_plane) + " of its diameter",
                 "it was cut into " + std::to_string(face.piece_count) +
                     " triangles; a different cut would give a different surface",
-                "use triangles if this matters"});
+                "use triangles if this matters; `exactff convert --triangulate` writes those of this cut"});
 }
 
 namespace {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "exactff/exact.h"
 #include "exactff/scene_files.h"
 #include "support/program.h"
 
@@ -50,6 +51,36 @@ TEST_F(ConvertCommand, TellsWhatIsLost) {
   EXPECT_NE(off.error.find("s.off: the patches and their names are lost"), std::string::npos) << off.error;
   EXPECT_NE(off.error.find("materials are lost"), std::string::npos);
   EXPECT_EQ(convert({room_, path("s.obj")}).error, "");
+}
+
+// A bent quadrilateral, a frame with a hole that is a keyhole ring, and corners on a straight side.
+TEST_F(ConvertCommand, TriangulatesWithTheSameValues) {
+  const std::string bent =
+      directory_
+          .write(
+              "bent.obj",
+              "v 0 0 0\nv 4 0 0\nv 4 4 1\nv 0 4 0\nv 1 1 3\nv 3 1 3\nv 3 3 3\nv 1 3 3\nv 2 1 3\nv 1.5 2 3\nv 2.5 2 3\n"
+              "v 2 2.5 3\ng floor\nf 1 2 3 4\ng lamp\nf 5 8 7 6 9\ng frame\nf 5 10 11 12 10 5 8 7 6 9\n")
+          .string();
+  EXPECT_EQ(convert({bent, path("t.obj"), "--triangulate"}).code, 0);
+  const Scene before = read_scene(bent), after = read_scene(path("t.obj"));
+  EXPECT_EQ(before.faces().size(), 3U);
+  for (const Face& face : after.faces()) {
+    EXPECT_EQ(face.rings.front().size(), 3U);
+    EXPECT_EQ(face.shape, FaceShape::kPlanar);
+  }
+  ASSERT_EQ(after.patches().size(), before.patches().size());
+  for (const Vec3& point : {Vec3{2, 2, -1}, {0.5, 3, 2}, {2, 2, 5}, {3.5, 1, 0.5}}) {
+    for (const Patch& patch : before.patches()) {
+      for (const double z : {1.0, -1.0}) {
+        const Receiver at{point, {0.25, 0.5, z}, {}, {}};
+        const auto value = [&](const Scene& scene) {
+          return exact_form_factor(scene, at, ExactSource(scene, scene.select(patch.name))).value;
+        };
+        EXPECT_EQ(value(after), value(before)) << patch.name;
+      }
+    }
+  }
 }
 
 TEST_F(ConvertCommand, DividesFacesIntoCellsThatAreNamed) {

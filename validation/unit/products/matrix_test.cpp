@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <random>
 #include <string>
 #include <vector>
 
+#include "exactff/exact.h"
 #include "exactff/scene_files.h"
 #include "generate/plain_scene.h"
 #include "matrix/row_facts.h"
@@ -435,11 +437,47 @@ TEST(Matrix, TwoSidedFacesKeepHolesMaterialsAndGlass) {
   EXPECT_TRUE(glass.face(FaceId{2}).transparent);
 }
 
-TEST(Matrix, TwoSidedRefusesBentFacesAndTakenNames) {
-  PlainScene bent;
-  add(bent, "sail", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.25}, {0, 1, 0}});
-  const Scene scene = generate::build(bent);
-  EXPECT_THROW((void)with_two_sided(scene, std::vector{scene.select("sail")}), InputError);
+// The twin of a bent face must be cut as the face is: else points between the two surfaces see one through the other.
+TEST(Matrix, TheTwinOfABentFaceIsItsTrianglesTurnedRound) {
+  std::mt19937_64 random(57);
+  std::uniform_real_distribution<double> anywhere(-1.0, 1.0);
+  const auto bent = [&](std::size_t corners, double height) {
+    std::vector<Vec3> ring;
+    for (std::size_t i = 0; i < corners; ++i) {
+      const double angle = 6.0 * static_cast<double>(i) / static_cast<double>(corners);
+      ring.push_back({std::cos(angle), std::sin(angle), height * anywhere(random)});
+    }
+    std::ranges::rotate(ring, ring.begin() + static_cast<std::ptrdiff_t>(random() % corners));
+    return ring;
+  };
+  for (int i = 0; i < 12; ++i) {
+    PlainScene plain;
+    add(plain, "sail", bent(4 + random() % 5, i % 2 == 0 ? 0.5 : 1e-9), random() % 2 == 0);
+    add(plain, "lamp", square(1.0, 2.0), true);
+    const Scene scene = generate::build(plain), triangles = triangulated(scene);
+    const auto sail = [](const Scene& in) { return std::vector{in.select("sail")}; };
+    const Scene doubled = with_two_sided(scene, sail(scene)), cut = with_two_sided(triangles, sail(triangles));
+    const Scene turned = scene.with_flipped(sail(scene));
+    const auto value = [](const Scene& in, const Receiver& at, const char* name) {
+      return exact_form_factor(in, at, ExactSource(in, in.select(name))).value;
+    };
+    for (int k = 0; k < 10; ++k) {
+      const double side = k % 2 == 0 ? 1.0 : -1.0;
+      const Receiver at{{anywhere(random), anywhere(random), side * (0.6 + anywhere(random))},
+                        {anywhere(random), anywhere(random), -side},
+                        {},
+                        {}};
+      EXPECT_EQ(value(doubled, at, "sail"), value(scene, at, "sail"));
+      EXPECT_EQ(value(doubled, at, "sail (back)"), value(turned, at, "sail"));
+      EXPECT_EQ(value(doubled, at, "lamp"), value(scene, at, "lamp"));
+      for (const char* name : {"sail", "sail (back)", "lamp"}) {
+        EXPECT_EQ(value(doubled, at, name), value(cut, at, name)) << name;
+      }
+    }
+  }
+}
+
+TEST(Matrix, TwoSidedRefusesTakenNames) {
   PlainScene taken;
   add(taken, "wall", square(1.0, 0.0));
   add(taken, "wall (back)", square(1.0, 1.0));

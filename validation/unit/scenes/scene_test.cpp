@@ -127,6 +127,51 @@ TEST(SceneNames, ManyPatchesAreNotAllListed) {
             "'patch7', 'patch17', 'patch27', 'patch37', 'patch47', 'patch0'");
 }
 
+// One triangle for each name, or a face without area after a '-'.
+Scene scene_of_names(const std::vector<std::string>& names) {
+  SceneBuilder builder("names");
+  const MaterialId material = builder.add_material({});
+  for (const Vec3& v : {Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}) builder.add_vertex(v);
+  for (const std::string& name : names) {
+    const bool is_flat = name.starts_with('-');
+    builder.add_face(builder.patch(name.substr(is_flat ? 1 : 0)), material, {{0, 1, is_flat ? 1U : 2U}});
+  }
+  return builder.build();
+}
+
+std::vector<std::string> all_like(const Scene& scene, const std::string& name) {
+  std::vector<std::string> names;
+  for (const Selection& selection : scene.select_all(name)) names.push_back(scene.name_of(selection));
+  return names;
+}
+
+TEST(SceneNames, APatternSelectsEveryPatchThatMatchesInTheOrderOfTheFile) {
+  using Names = std::vector<std::string>;
+  const Scene scene = scene_of_names({"person_2", "wall", "person_1", "desk/left", "-person_flat", "p\303\251"});
+  EXPECT_EQ(all_like(scene, "person_*"), (Names{"person_2", "person_1"}));
+  EXPECT_EQ(all_like(scene, "person_?"), (Names{"person_2", "person_1"}));
+  EXPECT_EQ(all_like(scene, "[dw]*"), (Names{"wall", "desk/left"}));
+  EXPECT_EQ(all_like(scene, "[!p]*[!t]"), Names{"wall"});
+  EXPECT_EQ(all_like(scene, "*"), (Names{"person_2", "wall", "person_1", "desk/left", "p\303\251"}));
+  EXPECT_EQ(all_like(scene, "*flat"), Names{"person_flat"}) << "without area, but no other matches";
+  EXPECT_EQ(all_like(scene, "p\xe9*"), Names{"p\303\251"}) << "in Latin-1";
+  EXPECT_TRUE(complaint([&] { (void)scene.select_all("persom_*"); })
+                  .starts_with("names: no patch or face has a name like 'persom_*' (* stands for any text, ? for one "
+                               "character, [...] for one of several); the patches are: 'person_2', 'person_1', "));
+  EXPECT_THROW((void)scene.select("person_*"), InputError) << "one name is wanted";
+}
+
+TEST(SceneNames, AnExactNameWinsOverAPattern) {
+  using Names = std::vector<std::string>;
+  const Scene scene = scene_of_names({"a*", "ab", "a[1]", "a1", "box", "box", "c?:1", "c?:2", "cd"});
+  EXPECT_EQ(all_like(scene, "a*"), Names{"a*"});
+  EXPECT_EQ(all_like(scene, "a[1]"), Names{"a[1]"});
+  EXPECT_EQ(all_like(scene, "a\\*"), Names{"a*"});
+  EXPECT_EQ(all_like(scene, "c?"), (Names{"c?:1", "c?:2"})) << "the cells of a patch with this name";
+  EXPECT_EQ(all_like(scene, "box:*"), (Names{"box:1", "box:2"})) << "faces, since no patch matches";
+  EXPECT_EQ(all_like(scene, "b*"), Names{"box"});
+}
+
 TEST(SceneNames, PatchModeFacesMakesEveryFaceAPatch) {
   const Scene scene = rooms({BadFaces::kReject, PatchMode::kFaces}).build();
   ASSERT_EQ(scene.patches().size(), 7U);
