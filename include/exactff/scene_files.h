@@ -8,11 +8,13 @@
 // - STL, in text and binary. A solid is a patch, with the rest of its line as its name. Vertices with equal doubles are
 //   one vertex. Fronts follow from the order of the vertices; stored normals are ignored.
 // - OFF, in text.
-// - View3D (.vs3). A surface is a patch; a combined surface belongs to the patch of the other one; obstruction surfaces
-//   form one patch. Kd is 1 - emittance. Subsurfaces are cut from their base exactly, or refused.
+// - View3D (.vs3). A surface is a patch; a combined surface belongs to the patch of the other one. Obstruction surfaces
+//   of one name are a patch, those without a name the patch `obstructions`. Kd is 1 - emittance. Subsurfaces are cut
+//   from their base exactly, or refused.
 //
 // Files without materials get Kd 1 and Ke 0. Text is read as doubles, correctly rounded, even where a PLY header says
-// float. Files of other known kinds (glTF, VTK, STEP, IFC, FBX, Blender, ...) are refused with the name of a converter.
+// float. Files of other known kinds (glTF, VTK, STEP, IFC, Abaqus, Nastran, EnergyPlus, ...) are refused with the name
+// of a converter.
 #pragma once
 
 #include <filesystem>

@@ -14,11 +14,52 @@ namespace {
 
 constexpr std::size_t kLookedAt = std::size_t{1} << 16;  // bytes of a file that show its format
 
-constexpr std::string_view kAssimp = "assimp export IN OUT.obj, or Blender";
-constexpr std::string_view kBlender = "Blender: export Wavefront (.obj)";
-constexpr std::string_view kMeshio = "meshio convert IN OUT.ply, or ParaView";
+constexpr std::string_view kAssimp = "assimp export IN OUT.obj, or Blender; both keep the names of objects";
+constexpr std::string_view kBlender = "Blender: export Wavefront (.obj), which keeps the names of objects";
+constexpr std::string_view kMeshio =
+    "meshio convert IN OUT.ply; names are lost unless a script gives them to exactff.Scene (data/README.md shows one)";
+constexpr std::string_view kScript =
+    "a script that gives exactff.Scene its polygons and their names (data/README.md shows one)";
 constexpr std::string_view kCad = "FreeCAD, or gmsh IN -2 -o OUT.stl";
 constexpr std::string_view kUnpack = "its unpacker";
+
+constexpr ForeignKind kGmsh{
+    "a Gmsh file",
+    "gmsh IN -save -setnumber Mesh.StlOneSolidPerSurface 2 -o OUT.stl, which keeps the names of "
+    "physical groups"};
+constexpr ForeignKind kFluent{"a Fluent mesh", kMeshio};
+constexpr ForeignKind kMsh{"a Gmsh or Fluent mesh (.msh)", kMeshio};
+constexpr ForeignKind kAbaqus{"an Abaqus or CalculiX file", kMeshio};
+constexpr ForeignKind kInp{"an Abaqus, CalculiX or AVS file (.inp)", kMeshio};
+constexpr ForeignKind kNastran{"a Nastran file", kMeshio};
+constexpr ForeignKind kVtk{"a VTK file", "ParaView or meshio: save as PLY, without names"};
+constexpr ForeignKind kGltf{"a glTF file", kAssimp};
+constexpr ForeignKind kCollada{"a Collada file", kAssimp};
+constexpr ForeignKind kFbx{"an FBX file", kAssimp};
+constexpr ForeignKind k3ds{"a 3DS file", kAssimp};
+constexpr ForeignKind kX3d{"an X3D file", kAssimp};
+constexpr ForeignKind kVrml{"a VRML file", kAssimp};
+constexpr ForeignKind kUsd{"a USD file", kBlender};
+constexpr ForeignKind kBlend{"a Blender file", kBlender};
+constexpr ForeignKind kRhino{"a Rhino file (.3dm)", "Rhino: export Wavefront (.obj)"};
+constexpr ForeignKind kStep{"a STEP file", kCad};
+constexpr ForeignKind kIges{"an IGES file", kCad};
+constexpr ForeignKind kDxf{"a DXF file", kCad};
+constexpr ForeignKind kDwg{"a DWG file", kCad};
+constexpr ForeignKind kIfc{"an IFC file",
+                           "IfcConvert --use-element-names IN OUT.obj, which keeps the names of elements"};
+constexpr ForeignKind kGbxml{"a gbXML file", "a BIM program: export Wavefront (.obj)"};
+constexpr ForeignKind kEnergyPlus{"an EnergyPlus input file",
+                                  "geomeppy in Python, whose surfaces have a Name and coords, and exactff.Scene "
+                                  "(data/README.md shows a script)"};
+constexpr ForeignKind kEpJson{"an EnergyPlus input file (epJSON)", kScript};
+constexpr ForeignKind kRadiance{"a Radiance scene", kScript};
+constexpr ForeignKind kPbrt{"a pbrt scene", "pbrt --toply IN, which writes its triangle meshes as PLY files"};
+constexpr ForeignKind kMitsuba{"a Mitsuba scene", "the OBJ and PLY files that it names, which exactff reads"};
+constexpr ForeignKind kFoam{"an OpenFOAM file",
+                            "surfaceMeshExtract OUT.obj in the folder of the case, which keeps the names of patches"};
+constexpr ForeignKind kHdf{"an HDF5 file (CGNS, MED, XDMF data)", kMeshio};
+constexpr ForeignKind kNetCdf{"a NetCDF file (Exodus)", kMeshio};
 
 struct Signature {
   std::string_view bytes;
@@ -26,31 +67,32 @@ struct Signature {
 };
 
 // The first bytes of a file.
-constexpr std::array<Signature, 30> kSignatures = {{
+constexpr std::array<Signature, 31> kSignatures = {{
     {"glTF", {"a binary glTF file (.glb)", kAssimp}},
-    {"# vtk DataFile", {"a legacy VTK file", kMeshio}},
-    {"Kaydara FBX Binary", {"an FBX file", kAssimp}},
-    {"; FBX", {"an FBX file in text", kAssimp}},
-    {"BLENDER", {"a Blender file", kBlender}},
+    {"# vtk DataFile", kVtk},
+    {"Kaydara FBX Binary", kFbx},
+    {"; FBX", kFbx},
+    {"BLENDER", kBlend},
     {"xof 0", {"a DirectX file", kAssimp}},
-    {"#VRML", {"a VRML file", kAssimp}},
-    {"#X3D", {"an X3D file", kAssimp}},
+    {"#VRML", kVrml},
+    {"#X3D", kX3d},
     {"#Inventor", {"an Open Inventor file", kAssimp}},
-    {"PXR-USDC", {"a USD file", kBlender}},
-    {"#usda", {"a USD file in text", kBlender}},
+    {"PXR-USDC", kUsd},
+    {"#usda", kUsd},
     {"//Maya ASCII", {"a Maya file", "Maya: export Wavefront (.obj)"}},
-    {"3D Geometry File Format", {"a Rhino file (.3dm)", "Rhino: export Wavefront (.obj)"}},
-    {"AutoCAD Binary DXF", {"a DXF file", kCad}},
-    {"AC10", {"a DWG file", kCad}},
+    {"3D Geometry File Format", kRhino},
+    {"AutoCAD Binary DXF", kDxf},
+    {"AC10", kDwg},
     {"DBRep_DrawableShape", {"an Open CASCADE file (.brep)", kCad}},
     {"CASCADE Topology", {"an Open CASCADE file (.brep)", kCad}},
-    {"$MeshFormat", {"a Gmsh file", kMeshio}},
+    {"$MeshFormat", kGmsh},
+    {"(0 \"", kFluent},
     {"MeshVersionFormatted", {"a Medit file", kMeshio}},
-    {"*HEADING", {"an Abaqus file", kMeshio}},
-    {"*Heading", {"an Abaqus file", kMeshio}},
-    {"\x89HDF\r\n\x1a\n", {"an HDF5 file (CGNS, MED, XDMF data)", kMeshio}},
-    {"CDF\x01", {"a NetCDF file (Exodus)", kMeshio}},
-    {"CDF\x02", {"a NetCDF file (Exodus)", kMeshio}},
+    {"*HEADING", kAbaqus},
+    {"*Heading", kAbaqus},
+    {"\x89HDF\r\n\x1a\n", kHdf},
+    {"CDF\x01", kNetCdf},
+    {"CDF\x02", kNetCdf},
     {"\x93NUMPY", {"a NumPy file", "meshio or trimesh in Python"}},
     {"PK\x03\x04", {"a ZIP archive (3MF, USDZ, FCStd, KMZ or other)", kUnpack}},
     {"\x1f\x8b", {"a file compressed by gzip", "gunzip"}},
@@ -61,27 +103,97 @@ constexpr std::array<Signature, 30> kSignatures = {{
      {"a file compressed by xz", "unxz"}},
 }};
 
+struct Extension {
+  std::string_view name;
+  ForeignKind kind;
+};
+
+// They count where the content tells nothing, and is not that of an OBJ file.
+constexpr std::array<Extension, 37> kExtensions = {{
+    {".inp", kInp},
+    {".bdf", kNastran},
+    {".nas", kNastran},
+    {".fem", kNastran},
+    {".rad", kRadiance},
+    {".idf", kEnergyPlus},
+    {".imf", kEnergyPlus},
+    {".epjson", kEpJson},
+    {".msh", kMsh},
+    {".vtk", kVtk},
+    {".vtu", kVtk},
+    {".vtp", kVtk},
+    {".gltf", kGltf},
+    {".glb", kGltf},
+    {".pbrt", kPbrt},
+    {".dae", kCollada},
+    {".3ds", k3ds},
+    {".fbx", kFbx},
+    {".stp", kStep},
+    {".step", kStep},
+    {".igs", kIges},
+    {".iges", kIges},
+    {".ifc", kIfc},
+    {".gbxml", kGbxml},
+    {".dxf", kDxf},
+    {".dwg", kDwg},
+    {".3dm", kRhino},
+    {".blend", kBlend},
+    {".wrl", kVrml},
+    {".x3d", kX3d},
+    {".usd", kUsd},
+    {".usda", kUsd},
+    {".usdc", kUsd},
+    {".med", kHdf},
+    {".cgns", kHdf},
+    {".exo", kNetCdf},
+    {".skp", {"a SketchUp file", "SketchUp: export OBJ"}},
+}};
+
 bool contains(std::string_view bytes, std::string_view part) { return bytes.find(part) != std::string_view::npos; }
 
 // STEP and IFC are schemes of one file format.
-ForeignKind step_kind(std::string_view head) {
-  if (contains(head, "IFC")) return {"an IFC file", "IfcConvert IN OUT.obj"};
-  return {"a STEP file", kCad};
+ForeignKind step_kind(std::string_view head) { return contains(head, "IFC") ? kIfc : kStep; }
+
+ForeignKind markup_kind(std::string_view head) {
+  if (contains(head, "<VTKFile")) return kVtk;
+  if (contains(head, "<COLLADA")) return kCollada;
+  if (contains(head, "<X3D")) return kX3d;
+  if (contains(head, "<Xdmf")) return {"an XDMF file", kMeshio};
+  if (contains(head, "<gbXML")) return kGbxml;
+  if (contains(head, "<scene version")) return kMitsuba;
+  if (contains(head, "<html") || contains(head, "<!DOCTYPE html") || contains(head, "<!doctype html"))
+    return {"a web page", "the page's own link to the file"};
+  return {"an XML file", kAssimp};
 }
 
-std::optional<ForeignKind> markup_kind(std::string_view head) {
-  if (contains(head, "<VTKFile")) return ForeignKind{"a VTK XML file", kMeshio};
-  if (contains(head, "<COLLADA")) return ForeignKind{"a Collada file", kAssimp};
-  if (contains(head, "<X3D")) return ForeignKind{"an X3D file", kAssimp};
-  if (contains(head, "<Xdmf")) return ForeignKind{"an XDMF file", kMeshio};
-  if (contains(head, "<gbXML")) return ForeignKind{"a gbXML file", "a BIM program: export Wavefront (.obj)"};
-  if (contains(head, "<html") || contains(head, "<!DOCTYPE html") || contains(head, "<!doctype html"))
-    return ForeignKind{"a web page", "the page's own link to the file"};
-  return ForeignKind{"an XML file", kAssimp};
+ForeignKind json_kind(std::string_view head) {
+  if (contains(head, "\"BuildingSurface:Detailed\"") || contains(head, "\"Building\"")) return kEpJson;
+  const bool gltf = contains(head, "\"asset\"") || contains(head, "\"meshes\"") || contains(head, "\"accessors\"");
+  return gltf ? kGltf : ForeignKind{"a JSON file", "its own program"};
 }
 
 // The first group of a DXF file: code 0, value SECTION.
 bool is_dxf(std::string_view head) { return text::take_word(head) == "0" && text::take_word(head) == "SECTION"; }
+
+// Text of a kind without a signature, by words that begin lines.
+std::optional<ForeignKind> text_kind(std::string_view head) {
+  text::PlainLines lines(head);
+  for (text::TextLine line; lines.next(line);) {
+    std::string_view rest = line.text;
+    const std::string_view word = text::take_word(rest), second = text::take_word(rest);
+    const std::string start = text::in_lower_case(word);
+    if (word.size() > 1 && word[0] == '*' && word[1] != '*') return kAbaqus;
+    if ((start == "begin" && text::in_lower_case(second) == "bulk") || word == "GRID" || word.starts_with("GRID,") ||
+        word.starts_with("GRID*"))
+      return kNastran;
+    if (start == "buildingsurface:detailed," || start == "zone," || start.starts_with("version,")) return kEnergyPlus;
+    if (word == "WorldBegin" || (word == "Shape" && second.starts_with('"'))) return kPbrt;
+    if (word == "FoamFile") return kFoam;
+    if (second == "polygon" || (word == "void" && (second == "plastic" || second == "light" || second == "glass")))
+      return kRadiance;
+  }
+  return std::nullopt;
+}
 
 // Lines of 80 columns; those of the first section end in S and a number.
 bool is_iges(std::string_view head) {
@@ -143,30 +255,37 @@ bool is_view3d(std::string_view head) {
   return false;
 }
 
+bool is_obj_keyword(std::string_view word) {
+  constexpr std::array<std::string_view, 13> kKeywords = {"v", "vn",     "vt",     "vp", "f",  "g",   "o",
+                                                          "s", "mtllib", "usemtl", "l",  "fo", "call"};
+  return std::ranges::find(kKeywords, word) != kKeywords.end();
+}
+
 }  // namespace
 
 std::string lower_extension(const std::filesystem::path& path) {
   return text::in_lower_case(path.extension().string());
 }
 
-std::optional<ForeignKind> foreign_kind(std::string_view bytes) {
+std::optional<ForeignKind> foreign_kind(std::string_view bytes, const std::filesystem::path& path) {
   const std::string_view head = without_mark(bytes.substr(0, kLookedAt));
   if (is_binary_stl(bytes)) return std::nullopt;
   for (const Signature& signature : kSignatures) {
     if (head.starts_with(signature.bytes)) return signature.kind;
   }
-  if (is_dxf(head)) return ForeignKind{"a DXF file", kCad};
-  if (is_iges(head)) return ForeignKind{"an IGES file", kCad};
-  if (is_3ds(bytes)) return ForeignKind{"a 3DS file", kAssimp};
+  if (is_dxf(head)) return kDxf;
+  if (is_iges(head)) return kIges;
+  if (is_3ds(bytes)) return k3ds;
   std::string_view start = head;
   start.remove_prefix(std::min(start.find_first_not_of(" \t\r\n"), start.size()));
   if (start.starts_with("ISO-10303-21;")) return step_kind(head);
   if (start.starts_with("<")) return markup_kind(head);
-  if (start.starts_with("{")) {
-    const bool gltf = contains(head, "\"asset\"") || contains(head, "\"meshes\"") || contains(head, "\"accessors\"");
-    return gltf ? ForeignKind{"a glTF file", kAssimp} : ForeignKind{"a JSON file", "its own program"};
-  }
-  return std::nullopt;
+  if (start.starts_with("{")) return json_kind(head);
+  if (format_of(bytes, path) != Format::kObj || is_obj_keyword(first_word(head))) return std::nullopt;
+  const std::string extension = lower_extension(path);
+  const auto* const known = std::ranges::find(kExtensions, extension, &Extension::name);
+  if (known != kExtensions.end()) return known->kind;
+  return extension == ".obj" ? std::nullopt : text_kind(head);
 }
 
 Format format_of(std::string_view bytes, const std::filesystem::path& path) {

@@ -19,7 +19,8 @@ struct ForeignKind {
   std::string_view name;       // "a glTF file"
   std::string_view converter;  // completes "convert it, for example with ..."
 };
-[[nodiscard]] std::optional<ForeignKind> foreign_kind(std::string_view bytes);
+// By the content; by the extension only if the content tells nothing and does not begin as that of an OBJ file.
+[[nodiscard]] std::optional<ForeignKind> foreign_kind(std::string_view bytes, const std::filesystem::path& path);
 
 // By the content, otherwise by the extension, otherwise OBJ.
 [[nodiscard]] Format format_of(std::string_view bytes, const std::filesystem::path& path);

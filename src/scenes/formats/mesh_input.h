@@ -16,6 +16,7 @@ namespace exactff::formats {
 
 inline constexpr std::string_view kDefaultPatch = "default";
 inline constexpr std::string_view kNoMaterial = "(none)";
+inline constexpr std::string_view kObstruction = "(obstruction)";  // material of View3D surfaces that only hide others
 
 // A place in a file: a line of text, or a byte of binary data, counted from 0.
 struct FilePlace {

@@ -38,6 +38,7 @@ class PlyReader {
  private:
   const PlyElement* element(std::string_view name) const;
   void read(const PlyElement& element);
+  void tell_strips(const PlyElement& element);
   void require_bytes(const PlyElement& element);
   void read_vertices(const PlyElement& element);
   void read_faces(const PlyElement& element);
@@ -68,13 +69,21 @@ void PlyReader<Rows>::read(const PlyElement& element) {
   require_bytes(element);
   if (element.name == "vertex") return read_vertices(element);
   if (element.name == "face") return read_faces(element);
-  if (element.name == "tristrips" && element.count > 0) {
-    input_.warn(at_line(element.line), "triangle strips are not read", "exactff reads the element face only",
-                "convert them to faces");
-  }
+  if (element.name == "tristrips" && element.count > 0) tell_strips(element);
   for_each_row(element, [&] {
     for (const PlyProperty& property : element.properties) rows_.pass_over(property);
   });
+}
+
+// Without other faces, nothing would be left.
+template <class Rows>
+void PlyReader<Rows>::tell_strips(const PlyElement& strips) {
+  const char* const what = "triangle strips (tristrips) are not read";
+  const char* const why = "exactff reads faces, the element face";
+  const char* const suggestion = "convert them to faces, for example with Blender or MeshLab";
+  const PlyElement* const faces = element("face");
+  if (faces == nullptr || faces->count == 0) input_.give_up(at_line(strips.line), what, why, suggestion);
+  input_.warn(at_line(strips.line), what, why, suggestion);
 }
 
 template <class Rows>

@@ -23,7 +23,7 @@ Scene read_scene(std::string_view bytes, const std::filesystem::path& path, cons
   const std::string file = path.string();
   if (bytes.empty())
     throw InputError({file, 0, "is empty", "there is nothing to compute with", std::string("give ") + kAnyFormat});
-  if (const auto kind = formats::foreign_kind(bytes)) {
+  if (const auto kind = formats::foreign_kind(bytes, path)) {
     throw InputError({file, 0, "is " + std::string(kind->name),
                       std::string("exactff reads OBJ, PLY, STL, OFF and View3D"),
                       "convert it, for example with " + std::string(kind->converter)});

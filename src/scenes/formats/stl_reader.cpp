@@ -191,6 +191,14 @@ Scene read_stl_binary(std::string_view bytes, const std::filesystem::path& path,
     input.give_up(at_byte(StlLayout::kTitle), "the file declares " + text::counted(count, "triangle"),
                   "its length is enough for " + std::to_string(held), "is it a complete binary STL file?");
   }
+  if (count == 0) {
+    input.give_up(at_byte(StlLayout::kTitle), "the file declares 0 triangles",
+                  held == 0 ? "there is nothing to compute with"
+                            : "its length is enough for " + text::counted(held, "triangle") +
+                                  ", so its program did not write the number",
+                  held == 0 ? "export the scene again"
+                            : "export the scene again, or write the number into the 4 bytes from byte 80 on");
+  }
   Triangles triangles(input);
   const PatchId patch = input.default_patch();
   for (std::size_t i = 0; i < count; ++i) {

@@ -2,8 +2,8 @@
 //
 // 1. Each line is a record; its first letter says of which kind. All records are read before the references between
 //    them are followed, but a surface may refer only to surfaces before it, as in View3D.
-// 2. A surface makes a patch of its name, a combined surface a face of the patch of another. Obstruction surfaces form
-//    one patch.
+// 2. A surface makes a patch of its name, a combined surface a face of the patch of another. Obstruction surfaces of
+//    one name form one patch, and so do those without a name. View3D itself does not read their names.
 // 3. A subsurface is cut from its base: it becomes a hole of the base, and its edges remain exactly its own.
 #include <cctype>
 #include <map>
@@ -48,8 +48,10 @@ class View3dReader {
   void read_vertex();
   void read_surface(bool obstructs_only);
   void read_ring(Surface& surface);
+  void read_obstruction(Surface& surface);
   std::size_t take_reference(const char* what);
   MaterialId take_emittance();
+  MaterialId obstruction_material();
   void add_surfaces();
   void cut_from_base(std::size_t place);
   PatchId patch_of(std::size_t place);
@@ -69,10 +71,10 @@ class View3dReader {
   std::string_view rest_;
   std::vector<Vec3> vertices_;
   std::vector<Surface> surfaces_;
-  std::unordered_map<std::string, MaterialId> materials_;  // by emittance
+  std::unordered_map<std::string, MaterialId> materials_;  // by emittance, and of obstructions
   std::unordered_set<std::string> names_;
-  std::map<std::size_t, PatchId> patches_;  // of surfaces that are not combined
-  std::optional<PatchId> obstructions_;
+  std::map<std::size_t, PatchId> patches_;       // of surfaces that are not combined
+  std::map<std::string, PatchId> obstructions_;  // by name
 };
 
 Scene View3dReader::run() {
@@ -125,10 +127,15 @@ bool View3dReader::read_record() {
 
 void View3dReader::check_geometry() {
   const std::string_view geometry = text::take_word(rest_);
-  if (geometry != "3") {
-    input_.give_up(at_line(line_.number), "geometry " + text::in_quotes(geometry) + " is not read",
-                   "exactff reads vertices and surfaces in three dimensions, F 3", "convert the file");
+  if (geometry == "3") return;
+  if (text::in_lower_case(geometry) == "3a") {
+    input_.give_up(
+        at_line(line_.number), "geometry '3a' is not read",
+        "it gives each surface by a point, an azimuth, a tilt and sizes, so corners would have to be rounded",
+        "write the corners as vertices, F 3");
   }
+  input_.give_up(at_line(line_.number), "geometry " + text::in_quotes(geometry) + " is not read",
+                 "exactff reads vertices and surfaces in three dimensions, F 3", "convert the file");
 }
 
 void View3dReader::check_number(std::string_view what, std::size_t expected) {
@@ -144,20 +151,21 @@ void View3dReader::read_vertex() {
   vertices_.push_back(input_.take_point(rest_, line_.number, "write V number x y z"));
 }
 
-// An obstruction surface has no more than its vertices.
 void View3dReader::read_surface(bool obstructs_only) {
   check_number("surface", surfaces_.size() + 1);
   Surface surface;
   surface.line = line_.number;
   surface.obstructs_only = obstructs_only;
   read_ring(surface);
-  if (!obstructs_only) {
+  if (obstructs_only) {
+    read_obstruction(surface);
+  } else {
     surface.base = take_reference("base");
     surface.combined_with = take_reference("combination");
     surface.material = take_emittance();
     surface.name = text::take_word(rest_);
   }
-  if (surface.name.empty()) surface.name = "surface_" + std::to_string(surfaces_.size() + 1);
+  if (surface.name.empty() && !obstructs_only) surface.name = "surface_" + std::to_string(surfaces_.size() + 1);
   surfaces_.push_back(std::move(surface));
 }
 
@@ -173,6 +181,21 @@ void View3dReader::read_ring(Surface& surface) {
     }
     surface.ring.push_back(static_cast<std::uint32_t>(*index - 1));
   }
+}
+
+// View3D passes over all that follows the vertices: a name, or base, combination, emittance and name as of a surface.
+void View3dReader::read_obstruction(Surface& surface) {
+  surface.material = obstruction_material();
+  const std::vector<std::string_view> words = text::words(rest_);
+  const auto is_name = [](std::string_view word) { return text::parse_number(word).fault != text::NumberFault::kNone; };
+  const auto name = std::ranges::find_if(words, is_name);
+  surface.name = words.size() > 3 ? words[3] : name == words.end() ? kObstructions : *name;
+}
+
+MaterialId View3dReader::obstruction_material() {
+  const auto [place, is_new] = materials_.try_emplace(std::string(kObstruction));
+  if (is_new) place->second = input_.material({std::string(kObstruction), {1.0, 1.0, 1.0}, {}});
+  return place->second;
 }
 
 std::size_t View3dReader::take_reference(const char* what) {
@@ -244,12 +267,9 @@ void View3dReader::cut_from_base(std::size_t place) {
 PatchId View3dReader::patch_of(std::size_t place) {
   const Surface& surface = surfaces_[place];
   if (surface.obstructs_only) {
-    if (!obstructions_) {
-      std::string name(kObstructions);
-      while (!names_.insert(name).second) name += '_';
-      obstructions_ = input_.patch(name);
-    }
-    return *obstructions_;
+    const auto known = obstructions_.find(surface.name);
+    if (known != obstructions_.end()) return known->second;
+    return obstructions_[surface.name] = input_.patch(distinct_name(place));
   }
   if (surface.combined_with == 0) return patches_[place] = input_.patch(distinct_name(place));
   const auto other = patches_.find(surface.combined_with - 1);

@@ -65,8 +65,7 @@ class View3dWriter {
  private:
   // The way in which such surfaces are read.
   bool obstructs_only(const OutputFace& output) const {
-    const Face& face = scene_.face(output.face);
-    return scene_.patch(face.patch).name == "obstructions" && scene_.material(face.material).name == kNoMaterial;
+    return scene_.material(scene_.face(output.face).material).name == kObstruction;
   }
   void append_corners(const OutputFace& face) {
     for (std::size_t i = 0; i < 4; ++i)
@@ -75,7 +74,7 @@ class View3dWriter {
   void append_obstruction(const OutputFace& face) {
     out_ += "O " + std::to_string(++count_);
     append_corners(face);
-    out_ += '\n';
+    out_ += ' ' + names_[index_of(scene_.face(face.face).patch)] + '\n';
   }
   void append_surface(const OutputFace& output) {
     const Face& face = scene_.face(output.face);

@@ -45,6 +45,16 @@ TEST(PlyReader, ReadsTextWithPolygons) {
   EXPECT_EQ(warnings_of(scene), "");
 }
 
+TEST(PlyReader, TriangleStripsAloneAreRefusedWithAConverter) {
+  const std::string strips = "element tristrips 1\nproperty list int int vertex_indices\n";
+  EXPECT_NE(
+      ply_error(header(strips) + kPlySquare + "4 0 1 3 2\n").find("s.ply:8: triangle strips (tristrips) are not read"),
+      std::string::npos);
+  const Scene both = from_ply(header(kFaces + strips) + kPlySquare + "4 0 1 2 3\n4 0 1 3 2\n");
+  EXPECT_EQ(both.faces().size(), 1U);
+  EXPECT_NE(warnings_of(both).find("are not read"), std::string::npos);
+}
+
 TEST(PlyReader, BinaryInBothByteOrdersIsTheSameScene) {
   const std::string hash = from_ply(header(kFaces) + "0.1 0 0\n1 0 0\n1 1 0\n0 1e300 0\n3 0 1 2\n").hash();
   for (const bool big : {false, true}) {

@@ -32,12 +32,12 @@ TEST(SceneFiles, ForeignKindsAreRefusedByNameAndWithAConverter) {
   const std::pair<std::string, std::string> kinds[] = {
       {"glTF\2\0\0\0", "a binary glTF file"},
       {"{\"asset\":{\"version\":\"2.0\"}}", "a glTF file"},
-      {"# vtk DataFile Version 3.0\n", "a legacy VTK file"},
-      {"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">", "a VTK XML file"},
+      {"# vtk DataFile Version 3.0\n", "a VTK file"},
+      {"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">", "a VTK file"},
       {"ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));", "a STEP file"},
       {"ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('IFC4'));", "an IFC file"},
       {"Kaydara FBX Binary  ", "an FBX file"},
-      {"; FBX 7.4.0 project file", "an FBX file in text"},
+      {"; FBX 7.4.0 project file", "an FBX file"},
       {"<?xml version=\"1.0\"?><COLLADA>", "a Collada file"},
       {"BLENDER-v300", "a Blender file"},
       {chunk(std::string_view("MM\x0c\0\0\0\2\0\n\0\0\0", 12)), "a 3DS file"},
@@ -53,6 +53,40 @@ TEST(SceneFiles, ForeignKindsAreRefusedByNameAndWithAConverter) {
     EXPECT_TRUE(message.starts_with("s.obj: is " + name)) << message;
     EXPECT_NE(message.find("; convert it, for example with "), std::string::npos) << message;
   }
+}
+
+// Files of building simulation, heat, flow and rendering: by content where a word tells, else by extension.
+TEST(SceneFiles, FilesOfTheFieldAreNamedByContentOrExtension) {
+  struct File {
+    std::string bytes, name, kind;
+  };
+  const std::string idf = "! a comment\n  Version,23.1;\nBuildingSurface:Detailed,\n  wall,\n";
+  const std::string gmsh = "$MeshFormat\n4.1 0 8\n", radiance = "# room\nvoid plastic grey\n0\n0\n5 .5 .5 .5 0 0\n";
+  const File files[] = {
+      {"** made by hand\n*Part, name=a\n*NODE\n1, 0, 0, 0\n", "a", "an Abaqus or CalculiX file"},
+      {"$ a comment\nSOL 101\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\n", "a", "a Nastran file"},
+      {"$ a comment\nGRID           1\n", "a.txt", "a Nastran file"},
+      {radiance, "a", "a Radiance scene"},
+      {"grey polygon wall\n0\n0\n9 0 0 0 1 0 0 1 1 0\n", "a", "a Radiance scene"},
+      {"!genbox grey a 1 1 1\n", "a.rad", "a Radiance scene"},
+      {idf, "a", "an EnergyPlus input file"},
+      {"{\"Building\": {\"a\": {}}}", "a", "an EnergyPlus input file (epJSON)"},
+      {gmsh, "a", "a Gmsh file"},
+      {"(0 \"made by hand\")\n(2 3)\n", "a.msh", "a Fluent mesh"},
+      {"<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\">", "a.vtu", "a VTK file"},
+      {"LookAt 0 0 0 1 1 1 0 0 1\nWorldBegin\nShape \"sphere\"\n", "a", "a pbrt scene"},
+      {"FoamFile\n{\n    class vectorField;\n    object points;\n}\n8\n(\n(0 0 0)\n", "points", "an OpenFOAM file"},
+      {"<?xml version=\"1.0\"?><gbXML>", "a.xml", "a gbXML file"},
+      {"<scene version=\"3.0.0\">", "a.xml", "a Mitsuba scene"},
+      {std::string("\1\2\0\3", 4), "a.skp", "a SketchUp file"},
+  };
+  for (const File& file : files) {
+    const std::string message = refusal(file.bytes, file.name);
+    EXPECT_TRUE(message.starts_with(file.name + ": is " + file.kind + " (")) << message;
+  }
+  const std::string obj = "# GRID of void plastic\nv 0 0 0\nv 1 0 0\nv 0 1 0\ng FoamFile\nf 1 2 3\n";
+  for (const char* name : {"s.inp", "s.msh", "s.rad", "s"}) EXPECT_EQ(read_scene(obj, name).faces().size(), 1U) << name;
+  EXPECT_EQ(read_scene("lid\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "s").faces().size(), 1U) << "with a warning";
 }
 
 TEST(SceneFiles, TheContentGoesBeforeTheExtension) {

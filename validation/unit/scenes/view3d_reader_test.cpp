@@ -48,6 +48,20 @@ TEST(View3dReader, ReadsVerticesSurfacesAndObstructions) {
   EXPECT_EQ(warnings_of(scene), "");
 }
 
+// As other programs write them: with a name, or with all that a surface has.
+TEST(View3dReader, ObstructionsKeepTheirNames) {
+  const Scene scene = from_view3d(kView3dVertices +
+                                  "S 1 1 2 3 4 0 0 0.9 floor\nO 2 5 6 7 8 pillar\nO 3 5 6 7 0 0 0 0.5 12 ! a name\n"
+                                  "O 4 5 6 8 0\nO 5 6 7 8 0 pillar\nO 6 6 7 8 0 floor\nO 7 5 6 7 0 0 0 0.5\nE\n");
+  EXPECT_EQ(patch_names(scene), (Names{"floor", "pillar", "12", "obstructions", "floor#6"}));
+  EXPECT_EQ(scene.faces_of(scene.select("pillar")), (std::vector<FaceId>{FaceId{1}, FaceId{4}}));
+  EXPECT_EQ(scene.faces_of(scene.select("obstructions")), (std::vector<FaceId>{FaceId{3}, FaceId{6}}));
+  const SceneFiles files = scene_files(scene, "s.vs3");
+  const Scene again = read_scene(files.files.front().bytes, "s.vs3");
+  EXPECT_EQ(patch_names(again), patch_names(scene));
+  EXPECT_NE(files.files.front().bytes.find("\nO 2 5 6 7 8 pillar\n"), std::string::npos) << files.files.front().bytes;
+}
+
 TEST(View3dReader, CombinedSurfacesAreFacesOfOnePatch) {
   const Scene scene =
       from_view3d(kView3dVertices + "S 1 1 2 3 0 0 0 .9 a\nS 2 1 3 4 0 0 0 .9 b\nS 3 5 6 7 0 0 1 .8 c\nE\n");
