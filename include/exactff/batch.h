@@ -43,6 +43,11 @@ void exact_form_factors(
     const ExactOptions& options, const Run& run,
     const std::function<void(std::size_t receiver, std::size_t source, const FormFactor& result)>& take);
 
+// What is open, all directions that meet nothing, as a source: value, bounds, status and enclosure of WholeView::open
+// (view.h) as a FormFactor, without records. Throws InputError for a visible fraction or a gradient.
+void sky_factors(const Scene& scene, const Receivers& receivers, const ExactOptions& options, const Run& run,
+                 const std::function<void(std::size_t receiver, const FormFactor& result)>& take);
+
 // As above, by any method. `estimates` are in the order of the sources, which `scene` must have prepared.
 void form_factors(const methods::PreparedScene& scene, const Settings& settings, const Receivers& receivers,
                   std::span<const methods::PreparedSource* const> sources, const Run& run,

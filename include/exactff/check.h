@@ -40,7 +40,7 @@ struct TruthRow {
   std::uint32_t line = 0;    // of the file
   Status status = Status::kCertified;
   Vec3 point;   // if Truth::has_points
-  Vec3 normal;  // if Truth::has_normals
+  Vec3 normal;  // of any length; if Truth::has_normals
   double value = 0.0;
   double lower = 0.0;
   double upper = 0.0;

@@ -6,6 +6,9 @@
 //
 // The last one calls the function for every row of a truth file and reports the limits that are exceeded and the worst
 // rows. The function takes (point, normal), (point, normal, name of the source) or (row), and returns a number.
+//
+// Normals of truth files have any length: those of receivers on a face are as long as its area. They are exact, and a
+// unit vector would be rounded. A function that needs a unit vector must divide by the length.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -169,3 +169,19 @@ def test_names_belong_to_arrays(tmp_path):
     exactff.truth(ROOM, GRID, tmp_path / "t.csv", "light")
     with pytest.raises(exactff.InputError, match="its rows name their receivers"):
         exactff.check(tmp_path / "t.csv", TRUE.value, receivers=GRID)
+
+
+def test_no_file_that_is_read_is_replaced(tmp_path):
+    room = exactff.Scene.read(CORNELL)
+    room.write(tmp_path / "room.obj")
+    room = exactff.Scene.read(tmp_path / "room.obj")
+    at = room.receivers("floor", grid=2)
+    exactff.truth(room, at, tmp_path / "t.csv")
+    before = {file: file.read_bytes() for file in tmp_path.iterdir()}
+    with pytest.raises(exactff.InputError, match="would be replaced"):
+        exactff.truth(room, at, tmp_path / "room.obj", existing="replace")
+    values = np.zeros(4)
+    for name in ("junit", "write_baseline"):
+        with pytest.raises(exactff.InputError, match="would be replaced"):
+            exactff.check(tmp_path / "t.csv", values, **{name: tmp_path / "t.csv"})
+    assert {file: file.read_bytes() for file in before} == before

@@ -202,6 +202,107 @@ def test_names_beyond_ascii():
         scene.faces_of("床:9")
 
 
+def test_patterns_and_lists_of_names():
+    room = exactff.Scene.read(CORNELL)
+    blocks = ("short_block", "tall_block")
+    turned = room.with_flipped("*_block")
+    assert turned.flipped == blocks and turned.hash == room.with_flipped(*blocks).hash == room.with_flipped(blocks).hash
+    assert room.with_transparent(["floor"], "[st]*_block").transparent == ("floor",) + blocks
+    assert room.with_two_sided(["*_block", "light"]).names[-3:] == tuple(f"{name} (back)" for name in (*blocks, "light"))
+    assert room.faces_of("*_block") == room.faces_of("short_block") + room.faces_of("tall_block")
+    assert len(room.receivers("*_block", centres=True)) == 10
+    at = room.receivers("floor", grid=3)
+    patterns, names = (room.form_factors(at.points, at.normals, which, at.on) for which in ("*_block", blocks))
+    assert same_bits(patterns, names) and patterns.shape == (9, 2)
+    odd = build([[0, 1, 2], [4, 5, 6]], patch=["a*", "ab"])
+    assert odd.with_flipped("a*").flipped == ("a*",)
+    with pytest.raises(exactff.InputError, match="tall_block"):
+        room.with_flipped("tall_blok*")
+    with pytest.raises(exactff.InputError, match="named twice"):
+        room.form_factors(at.points, at.normals, ["tall_block", "tall_block"])
+    assert room.form_factors(at.points, at.normals, ["tall_block", "*_block"]).shape == (9, 2)
+
+
+def test_triangles_stand_for_bent_faces():
+    with pytest.warns(exactff.ModellingWarning, match="--triangulate"):
+        bent = exactff.Scene(VERTICES + np.outer(np.arange(8) == 2, [0, 0, 0.25]), [[0, 1, 2, 3], [7, 6, 5, 4]],
+                             patch=["sail", "lamp"])
+    cut = bent.triangulated()
+    assert bent.report().not_planar and not cut.report().not_planar and len(cut.areas) == 4 and cut.names == bent.names
+    points = np.random.default_rng(57).uniform(-1, 1, (50, 3)) + [0, 0, 0.5]
+    for on in ("sail", "lamp"):
+        assert same_bits(*(scene.form_factors(points, [0.1, 0.2, 1], on) for scene in (bent, cut)))
+    sails = [scene.with_two_sided("sail") for scene in (bent, cut)]
+    assert same_bits(*(scene.form_factors(points, [0.1, 0.2, 1], ["sail (back)", "lamp"]) for scene in sails))
+
+
+@pytest.mark.parametrize("name", ["s.obj", "s.ply", "s.stl", "s.off", "s.vs3"])
+def test_a_written_scene_is_that_of_convert(tmp_path, name):
+    room = exactff.Scene.read(CORNELL)
+    if name == "s.obj":
+        room.write(tmp_path / name)
+        assert exactff.Scene.read(tmp_path / name).hash == room.hash and (tmp_path / "s.mtl").exists()
+    else:
+        with pytest.warns(exactff.ModellingWarning, match="lost|cut"):
+            room.write(tmp_path / name)
+    other = tmp_path / "other"
+    other.mkdir()
+    program("convert", CORNELL, other / name)
+    assert (other / name).read_bytes() == (tmp_path / name).read_bytes()
+
+
+def test_written_scenes_replace_nothing_that_is_read(tmp_path):
+    exactff.Scene.read(CORNELL).write(tmp_path / "room.obj")
+    (tmp_path / "library.mtl").write_bytes((tmp_path / "room.mtl").read_bytes())
+    text = (tmp_path / "room.obj").read_text().replace("mtllib room.mtl", "mtllib library.mtl")
+    (tmp_path / "room.obj").write_text(text)
+    room = exactff.Scene.read(tmp_path / "room.obj")
+    before = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
+    (tmp_path / "link.obj").symlink_to("room.obj")
+    for made in (room, room.with_flipped("light"), room.divided(300), room.triangulated()):
+        for name in ("room.obj", "link.obj", "library.obj"):
+            with pytest.raises(exactff.InputError, match="is read and would be replaced"):
+                made.write(tmp_path / name, existing="replace")
+    for name, words in (("room.ply", "already exists"), ("s.txt", "extension"), ("no/s.obj", "no/s")):
+        (tmp_path / "room.ply").write_text("mine")
+        with pytest.raises(exactff.InputError, match=words):
+            room.write(tmp_path / name)
+    assert (tmp_path / "room.ply").read_text() == "mine"
+    assert {name: (tmp_path / name).read_bytes() for name in before} == before
+    with pytest.warns(exactff.ModellingWarning, match="lost"):
+        room.write(tmp_path / "room.ply", existing="replace", encoding="text")
+    assert (tmp_path / "room.ply").read_text().startswith("ply\nformat ascii")
+    for wrong in (dict(existing="resume"), dict(encoding="utf-8")):
+        with pytest.raises(exactff.InputError, match="choose"):
+            room.write(tmp_path / "new.obj", **wrong)
+
+
+def test_a_mesh_of_meshio_keeps_the_names_of_its_groups(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    (tmp_path / "room.msh").write_text(
+        '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 7 "a wall"\n2 9 "floor"\n$EndPhysicalNames\n'
+        "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
+        "$Elements\n3\n1 2 2 9 1 1 2 3\n2 2 2 7 2 1 3 4\n3 2 2 7 2 1 4 2\n$EndElements\n")
+    with pytest.raises(exactff.InputError, match="is a Gmsh file"):
+        exactff.Scene.read(tmp_path / "room.msh")
+    page = (SCENES.parent / "README.md").read_text()
+    code = next(part for part in page.split("```python\n")[1:] if "import exactff, meshio" in part).split("```")[0]
+    exec(code.replace("room.", f"{tmp_path}/room."), {})
+    scene = exactff.Scene.read(tmp_path / "room.obj")
+    assert {patch.name: len(patch.faces) for patch in scene.patches} == {"floor": 1, "a wall": 2}
+
+
+def test_polygons_with_names_become_patches(tmp_path):
+    surfaces = [types.SimpleNamespace(Name=name, coords=[(0, 0, z), (1, 0, z), (1, 1, z), (0, 1, z)][:corners])
+                for name, z, corners in (("floor", 0, 4), ("Roof 1", 1, 3))]
+    page = (SCENES.parent / "README.md").read_text()
+    code = next(part for part in page.split("```python\n")[1:] if "from geomeppy" in part).split("```")[0]
+    code = code[code.index("corners ="):].replace("house.", f"{tmp_path}/house.")
+    exec(code, {"exactff": exactff, "surfaces": surfaces})
+    scene = exactff.Scene.read(tmp_path / "house.obj")
+    assert scene.names == ("floor", "Roof 1") and scene.areas.tolist() == [1.0, 0.5]
+
+
 def test_a_patch_object_of_the_lamp():
     patch = lamp_above().patches[0]
     assert patch[:4] == ("lamp", (0,), 1.0, (0.0, 0.0, -1.0)) and patch.emits

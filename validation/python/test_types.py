@@ -18,6 +18,10 @@ def test_the_package_is_typed(tmp_path):
     user.write_text("import exactff\nimport numpy as np\n"
                     "scene = exactff.Scene.read('room.obj')\n"
                     "values: 'np.ndarray' = scene.form_factors([[0, 0, 0]], [0, 0, 1], ['light'], on='auto')\n"
+                    "turned: exactff.Scene = scene.with_flipped('wall_*', ['floor', 'lamp']).triangulated()\n"
+                    "turned.write('new.ply', encoding='text', existing='replace')\n"
+                    "exactff.view_factor_matrix(turned, 'all', ['wall_*', 'sky']).save('m.npz')\n"
+                    "unit: 'np.ndarray' = scene.receivers('floor', grid=3).unit_normals\n"
                     "word: str = scene.form_factor([0, 0, 0], [0, 0, 1]).enclosure.midpoint\n")
     mypy = (sys.executable, "-m", "mypy", "--cache-dir", tmp_path / "cache")
     run(*mypy, "--strict", "-p", "exactff", cwd=PACKAGE.parent)

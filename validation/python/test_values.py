@@ -61,6 +61,39 @@ def test_degenerate_receivers_by_coordinates_give_the_bits_of_the_program(tmp_pa
         assert [STATUS[row["status"]] for row in rows] == found.status.ravel().tolist()
 
 
+def test_the_sky_is_a_source_as_in_truth_files(tmp_path):
+    lamp = lamp_above((0.5, 1.0))
+    at = lamp.receivers("plates", grid=4)
+    values = lamp.form_factors(at.points, at.normals, ["sky", "lamp"], at.on, full=True)
+    assert values.sources == ("sky", "lamp") and values.value.shape == (16, 2)
+    assert np.allclose(values.value.sum(axis=1), 1) and (values.lower <= values.value).all()
+    exactff.truth(lamp, at, tmp_path / "t.csv", ["sky", "lamp"])
+    rows = truth_rows(tmp_path / "t.csv")
+    assert [row["source"] for row in rows[:2]] == ["lamp", "sky"]
+    assert same_bits(column(rows, "exact", 2), values.value[:, ::-1])
+    assert same_bits(column(rows, "lower", 2), values.lower[:, ::-1])
+    alone = lamp.form_factors(at.points, at.normals, "sky", at.on)
+    assert same_bits(alone[:, 0], values.value[:, 0])
+    view = exactff.view(lamp, at.points[0], at.normals[0], at.on[0])
+    assert same_bits(view.open.value, alone[0, 0])
+    for asked in ("fraction", "gradient"):
+        with pytest.raises(exactff.InputError, match="sky"):
+            lamp.form_factors(at.points, at.normals, "sky", at.on, **{asked: True})
+    named = exactff.Scene(square(0.0), [[0, 1, 2, 3]], patch=["sky"])
+    assert same_bits(named.form_factors([[0, 0, -1]], [0, 0, 1], "sky"), [[0.0]]), "a patch of this name has priority"
+
+
+def test_unit_normals_are_those_of_truth_files(tmp_path):
+    room = exactff.Scene.read(CORNELL)
+    at = room.receivers("tall_block", centres=True)
+    assert np.hypot.reduce(at.normals, axis=1).max() > 1e4
+    exactff.truth(room, at, tmp_path / "t.csv", unit_normals=True)
+    rows = truth_rows(tmp_path / "t.csv")
+    unit = np.stack([column(rows, name, 1)[:, 0] for name in ("ux", "uy", "uz")], axis=1)
+    assert same_bits(at.unit_normals, unit) and np.allclose((unit**2).sum(axis=1), 1)
+    assert "# normals: nx,ny,nz are exact and of any length" in (tmp_path / "t.csv").read_text()
+
+
 def test_threads_and_size_of_a_batch_change_no_bit():
     scene = exactff.Scene.read(CORNELL)
     receivers = scene.receivers("floor", grid=(20, 20))

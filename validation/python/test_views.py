@@ -1,12 +1,13 @@
 """View factors from patch to patch, and the whole view."""
 
 import csv
+import pickle
 
 import numpy as np
 import pytest
 
 import exactff
-from support import CORNELL, POINT, SCENES, UP, lamp_above, program, same_bits
+from support import CORNELL, POINT, SCENES, UP, lamp_above, program, same_bits, square
 
 L_ROOM = str(SCENES / "formats" / "test4.vs3")
 ROOM = exactff.Scene.read(CORNELL)
@@ -80,6 +81,50 @@ def test_backs_become_patches(tmp_path):
     assert [float(row["upper"]) for row in rows] == list(f.upper[0])
     with pytest.raises(exactff.InputError, match="srf-99"):
         scene.with_two_sided("srf-99")
+
+
+def test_a_matrix_is_saved_as_the_program_writes_it(tmp_path):
+    scene = exactff.Scene.read(L_ROOM)
+    matrix = exactff.view_factor_matrix(scene, "srf-[1-8]", "srf-?", accuracy=1e-3, backs=True, sky=True)
+    flags = {".csv": "-o", ".npz": "--npz", ".idf": "--energyplus", ".out": "--view3d"}
+    common = ["--accuracy", "1e-3", "--backs", "--to", "all,sky"]
+    program("matrix", L_ROOM, *common, *(word for end, flag in flags.items() for word in (flag, tmp_path / f"p{end}")))
+    for end in flags:
+        matrix.save(tmp_path / f"m{end}")
+        assert (tmp_path / f"m{end}").read_bytes() == (tmp_path / f"p{end}").read_bytes(), end
+    row = exactff.view_factor_matrix(scene, "srf-1", accuracy=1e-3)
+    row.save(tmp_path / "m.vtp")
+    program("matrix", L_ROOM, "--from", "srf-1", "--accuracy", "1e-3", "--vtk", tmp_path / "p.vtp")
+    assert (tmp_path / "m.vtp").read_bytes() == (tmp_path / "p.vtp").read_bytes()
+    matrix.save(tmp_path / "zone.idf", zone="Attic")
+    assert "Attic" in (tmp_path / "zone.idf").read_text()
+    for name, words in (("m.vtp", "already exists"), ("x.xlsx", "extension"), ("x.vtp", "8 rows"), ("no/m.csv", "no/m")):
+        with pytest.raises(exactff.InputError, match=words):
+            matrix.save(tmp_path / name)
+    with pytest.raises(exactff.InputError, match="same patches"):
+        row.save(tmp_path / "x.idf")
+    again = pickle.loads(pickle.dumps(matrix))
+    assert same_bits(again.value, matrix.value) and again["srf-1", "srf-2"] == matrix["srf-1", "srf-2"]
+    with pytest.raises(exactff.InputError, match="copied"):
+        again.save(tmp_path / "x.csv")
+
+
+def test_a_matrix_with_overlaps_makes_no_energy(tmp_path):
+    scene = exactff.Scene(square(0.0) + square(0.0, 0.5) + square(1.0), [[0, 1, 2, 3], [4, 5, 6, 7], [11, 10, 9, 8]],
+                          patch=["wall", "window", "lamp"])
+    matrix = exactff.view_factor_matrix(scene, accuracy=1e-2)
+    matrix.save(tmp_path / "m.csv")
+    for name in ("m.idf", "m.out"):
+        with pytest.raises(exactff.InputError, match="energy"):
+            matrix.save(tmp_path / name)
+    assert [file.name for file in tmp_path.iterdir()] == ["m.csv"]
+
+
+def test_the_sky_is_a_column_by_name():
+    lamp = lamp_above((0.5, 0.5))
+    one, other = (exactff.view_factor_matrix(lamp, "lamp", *which, accuracy=1e-3, **more)
+                  for which, more in (((["sky", "plates"],), {}), ((["plates"],), {"sky": True})))
+    assert one.to_names == other.to_names == ("plates",) and one.open == other.open
 
 
 def test_a_matrix_is_certified_on_request():

@@ -6,11 +6,13 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exactff/batch.h"
@@ -34,7 +36,8 @@ class SharedScene {
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] std::shared_ptr<const ExactSource> source(const Selection& selection) const;
-  // Every patch that emits, if there are no names. Throws InputError for a name that the scene does not have.
+  // As flags take names (flags::selections_named): patterns, "all", the cells of a divided patch. Every patch that
+  // emits, if there are no names. Throws InputError for a name that the scene does not have.
   [[nodiscard]] std::vector<Selection> selections(const std::vector<std::string>& names) const;
 
  private:
@@ -45,6 +48,8 @@ class SharedScene {
 
 // Text that may not be UTF-8, such as a message that names a file.
 [[nodiscard]] py::str shown(const std::string& text);
+// Writes the files, each complete or not at all: all are on disk before the first one gets its name.
+void write_whole_files(const std::vector<std::pair<std::filesystem::path, std::string>>& files);
 [[nodiscard]] py::tuple to_tuple(const Problem& problem);
 [[nodiscard]] py::tuple to_tuple(const Vec3& v);
 [[nodiscard]] py::tuple to_tuple(const Rgb& colour);

@@ -1,4 +1,6 @@
 // Exact form factors: of arrays of receivers, and of one pair with everything that is known about it.
+#include <algorithm>
+
 #include "exactff/batch.h"
 #include "python/bindings.h"
 #include "python/interrupt.h"
@@ -98,23 +100,42 @@ class Tables {
   Columns columns_;
 };
 
+// The column of "sky", unless a patch has this name. Taken out of the names.
+std::optional<std::size_t> take_sky(const Scene& scene, std::vector<std::string>& names) {
+  const auto sky = std::ranges::find(names, "sky");
+  if (sky == names.end() || std::ranges::find(scene.patches(), "sky", &Patch::name) != scene.patches().end()) return {};
+  const auto column = static_cast<std::size_t>(sky - names.begin());
+  names.erase(sky);
+  return column;
+}
+
 // Value, status, lower, upper, bits, fraction, gradient and its status (receivers, 3 sources).
 py::tuple form_factors_of(const SharedScene& scene, const Numbers& points, const Numbers& normals, const Integers& on,
-                          const std::vector<std::string>& names, bool full, bool fraction, bool gradient,
-                          int precision_cap, int threads, const py::object& progress) {
+                          std::vector<std::string> names, bool full, bool fraction, bool gradient, int precision_cap,
+                          int threads, const py::object& progress) {
   const ArrayReceivers receivers(points, normals, on);
+  const std::optional<std::size_t> sky = take_sky(scene.scene(), names);
   std::vector<std::shared_ptr<const ExactSource>> sources;
   std::vector<const ExactSource*> list;
-  for (const Selection& selection : scene.selections(names)) {
-    list.push_back(sources.emplace_back(scene.source(selection)).get());
+  if (!sky || !names.empty()) {
+    for (const Selection& selection : scene.selections(names)) {
+      list.push_back(sources.emplace_back(scene.source(selection)).get());
+    }
   }
-  const Tables out(receivers.count(), list.size(), full, fraction, gradient);
+  const std::size_t columns = list.size() + (sky ? 1 : 0);
+  const Tables out(receivers.count(), columns, full, fraction, gradient);
+  const ExactOptions options{.visible_fraction = fraction, .gradient = gradient, .precision_cap = precision_cap};
   Interrupt interrupt(progress);
   interrupt.run([&] {
-    batch::exact_form_factors(scene.scene(), receivers.in_batch(), list,
-                              {.visible_fraction = fraction, .gradient = gradient, .precision_cap = precision_cap},
-                              {threads, interrupt.hooks()}, [&](std::size_t i, std::size_t s, const FormFactor& f) {
-                                out.set(i * list.size() + s, f);
+    const batch::Run run{threads, interrupt.hooks()};
+    if (sky) {
+      batch::sky_factors(scene.scene(), receivers.in_batch(), options, run,
+                         [&](std::size_t i, const FormFactor& f) { out.set(i * columns + *sky, f); });
+    }
+    if (list.empty()) return;
+    batch::exact_form_factors(scene.scene(), receivers.in_batch(), list, options, run,
+                              [&](std::size_t i, std::size_t s, const FormFactor& f) {
+                                out.set(i * columns + (sky && s >= *sky ? s + 1 : s), f);
                               });
   });
   return out.tuple();

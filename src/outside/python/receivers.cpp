@@ -8,6 +8,7 @@
 #include "exactff/receiver.h"
 #include "python/bindings.h"
 #include "python/interrupt.h"
+#include "truth/unit_normal.h"
 
 namespace exactff::python {
 
@@ -43,6 +44,13 @@ Numbers rows_of(const List& list, Vec3 Receiver::*field) {
     *out++ = (receiver.*field).z;
   }
   return result;
+}
+
+Numbers unit_normals_of(const List& list) {
+  List unit(list.size());
+  truth::UnitNormal last;
+  for (std::size_t i = 0; i < list.size(); ++i) unit[i].normal = last.of(list[i].normal);
+  return rows_of(unit, &Receiver::normal);
 }
 
 // Lists of faces as rows of equal length, which end with -1.
@@ -121,6 +129,7 @@ void bind_receivers(py::module_& module) {
       .def("__len__", [](const List& list) { return list.size(); })
       .def("points", [](const List& list) { return rows_of(list, &Receiver::point); })
       .def("normals", [](const List& list) { return rows_of(list, &Receiver::normal); })
+      .def("unit_normals", &unit_normals_of)
       .def("on",
            [](const List& list) {
              return padded(

@@ -5,6 +5,8 @@
 #include "exactff/models.h"
 #include "exactff/scene_files.h"
 #include "exactff/slips.h"
+#include "files/file.h"
+#include "flags/lists.h"
 #include "kernel/vec.h"
 #include "python/bindings.h"
 #include "python/interrupt.h"
@@ -21,10 +23,18 @@ std::shared_ptr<const ExactSource> SharedScene::source(const Selection& selectio
 }
 
 std::vector<Selection> SharedScene::selections(const std::vector<std::string>& names) const {
-  if (names.empty()) return scene_.emitters();
-  std::vector<Selection> selections;
-  for (const std::string& name : names) selections.push_back(scene_.select(name));
-  return selections;
+  return names.empty() ? scene_.emitters() : flags::selections_named(scene_, names);
+}
+
+void write_whole_files(const std::vector<std::pair<std::filesystem::path, std::string>>& files) {
+  std::vector<std::unique_ptr<files::WholeFile>> begun;
+  for (const auto& [path, bytes] : files) {
+    begun.push_back(
+        std::make_unique<files::WholeFile>(path, files::FailureAdvice(), files::WholeFile::WhenBusy::kWait));
+    begun.back()->append(bytes);
+    begun.back()->sync();
+  }
+  for (const auto& file : begun) file->commit();
 }
 
 namespace {
@@ -189,6 +199,25 @@ Shared with_transparent(const SharedScene& self, const std::vector<std::string>&
   return shared(self.scene().with_transparent(self.selections(names)));
 }
 
+// Tells the files that would be written to `check`, which may raise; then writes them. What the format does not hold.
+std::vector<std::string> write_scene(const SharedScene& self, const std::filesystem::path& path,
+                                     const std::string& encoding, const py::function& check) {
+  SceneFiles made = scene_files(self.scene(), path,
+                                encoding == "text"     ? Encoding::kText
+                                : encoding == "binary" ? Encoding::kBinary
+                                                       : Encoding::kDefault);
+  std::vector<std::pair<std::filesystem::path, std::string>> files;
+  std::vector<std::string> losses;
+  for (SceneFiles::File& file : made.files) {
+    check(file.path);
+    files.emplace_back(std::move(file.path), std::move(file.bytes));
+  }
+  for (const Problem& loss : made.losses) losses.push_back(loss.message());
+  const py::gil_scoped_release released;
+  write_whole_files(files);
+  return losses;
+}
+
 // The cells, and how far their corners are off.
 py::tuple divided_of(const SharedScene& self, double length) {
   DividedScene made = [&] {
@@ -240,7 +269,9 @@ void bind_scene(py::module_& module) {
           "faces_of",
           [](const SharedScene& s, const std::string& name) {
             std::vector<std::size_t> indices;
-            for (const FaceId face : s.scene().faces_of(s.scene().select(name))) indices.push_back(index_of(face));
+            for (const Selection& selection : s.selections({name})) {
+              for (const FaceId face : s.scene().faces_of(selection)) indices.push_back(index_of(face));
+            }
             return indices;
           },
           py::arg("name"))
@@ -253,6 +284,14 @@ void bind_scene(py::module_& module) {
           "cells_of",
           [](const SharedScene& s, const std::string& name) { return names_of(s.scene(), s.scene().select_all(name)); },
           py::arg("name"))
+      .def(
+          "names_like",
+          [](const SharedScene& s, const std::vector<std::string>& names) {
+            return names.empty() ? names : names_of(s.scene(), s.selections(names));
+          },
+          py::arg("names"))
+      .def("triangulated", [](const SharedScene& s) { return shared(triangulated(s.scene())); })
+      .def("write", &write_scene, py::arg("path"), py::arg("encoding"), py::arg("check"))
       .def("flipped", [](const SharedScene& s) { return names_of(s.scene(), s.scene().flipped()); })
       .def("transparent", [](const SharedScene& s) { return names_of(s.scene(), s.scene().transparent()); })
       .def("warnings", &warnings_of)

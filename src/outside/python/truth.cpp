@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "flags/lists.h"
 #include "python/bindings.h"
 #include "python/interrupt.h"
 
@@ -26,7 +27,9 @@ py::tuple write_rows(const SharedScene& scene, const std::string& scene_name, co
   request.scene_name = scene_name;
   request.receivers = receivers;
   request.receivers_name = receivers_name;
-  request.sources = scene.selections(sources);
+  std::vector<std::string> patches = sources;
+  request.sky = flags::take_sky(scene.scene(), patches);
+  if (!request.sky || !patches.empty()) request.sources = scene.selections(patches);
   request.unoccluded = wanted("unoccluded");
   request.visible_fraction = wanted("visible_fraction");
   request.unit_normals = wanted("unit_normals");

@@ -1,10 +1,16 @@
 // View factors from patch to patch, and the whole view from one receiver.
 #include "exactff/view_factors.h"
 
+#include <pybind11/stl/filesystem.h>
+
 #include "exactff/matrix.h"
+#include "exactff/slips.h"
 #include "exactff/view.h"
+#include "matrix/row_on_faces.h"
 #include "python/bindings.h"
 #include "python/interrupt.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff::python {
 namespace {
@@ -42,11 +48,54 @@ py::tuple to_tuple(const matrix::Reciprocity& reciprocity) {
   return py::make_tuple(reciprocity.pairs, worst, apart);
 }
 
-// Entries row by row, backs, what is open, what is buried, sums of rows (lower, upper), reasons against 1, reciprocity.
-py::tuple view_factor_matrix_of(const SharedScene& scene, const std::vector<std::string>& from,
+// A matrix with what its files need.
+class MadeMatrix {
+ public:
+  MadeMatrix(std::shared_ptr<const SharedScene> scene, matrix::Matrix made, ViewFactorOptions options)
+      : shared_(std::move(scene)), made_(std::move(made)), options_(options) {}
+
+  // The extension says which file: .csv, .npz, .idf (EnergyPlus), .out (View3D), .vtp or .vtu (one row).
+  void write(const std::filesystem::path& path, const std::string& extension, const std::string& zone) const {
+    const py::gil_scoped_release released;
+    const Scene& scene = shared_->scene();
+    if (extension == ".npz") return matrix::write_npz(scene, made_, path);
+    if (extension == ".vtp" || extension == ".vtu") return write_row(path);
+    if (extension == ".csv") return write_whole_files({{path, csv_text(scene, made_, options_)}});
+    refuse_overlaps(path);
+    write_whole_files({{path, extension == ".idf" ? energyplus_text(scene, made_, zone) : view3d_text(scene, made_)}});
+  }
+
+ private:
+  void write_row(const std::filesystem::path& path) const {
+    if (made_.factors.from.size() != 1 || made_.factors.to.empty()) {
+      text::refuse(path, "shows one row on the patches of the scene",
+                   "the matrix has " + text::counted(made_.factors.from.size(), "row") + " and " +
+                       text::counted(made_.factors.to.size(), "column"),
+                   "name one patch in from_patches, and patches in to_patches");
+    }
+    write_vtk(shared_->scene(), made_, path);
+  }
+  void refuse_overlaps(const std::filesystem::path& path) const {
+    std::vector<slips::Overlap> overlaps = slips::overlapping_fronts(shared_->scene(), made_.factors.to);
+    std::erase_if(overlaps, [](const slips::Overlap& one) { return one.apart > 0.0; });
+    if (overlaps.empty()) return;
+    Problem problem = slips::warning_of_overlaps(shared_->scene(), overlaps);
+    problem.file = path.string();
+    problem.why = "a file for EnergyPlus or View3D with such rows makes energy, and was not written";
+    throw InputError(std::move(problem));
+  }
+
+  std::shared_ptr<const SharedScene> shared_;
+  matrix::Matrix made_;
+  ViewFactorOptions options_;
+};
+
+// Entries row by row, backs, what is open, what is buried, sums of rows (lower, upper), reasons
+// against 1, reciprocity, MadeMatrix.
+py::tuple view_factor_matrix_of(const std::shared_ptr<SharedScene>& scene, const std::vector<std::string>& from,
                                 const std::vector<std::string>& to, double accuracy, std::size_t budget, bool certify,
                                 bool backs, bool open, bool both_directions, int threads, const py::object& progress) {
-  const Scene& in = scene.scene();
+  const Scene& in = scene->scene();
   std::vector<Selection> rows, columns;
   for (const std::string& name : from) rows.push_back(in.select(name));
   for (const std::string& name : to) columns.push_back(in.select(name));
@@ -58,7 +107,7 @@ py::tuple view_factor_matrix_of(const SharedScene& scene, const std::vector<std:
   Interrupt interrupt(progress);
   std::vector<std::string> reasons;
   matrix::Reciprocity reciprocity;
-  const matrix::Matrix made = interrupt.run([&] {
+  matrix::Matrix made = interrupt.run([&] {
     matrix::Matrix computed = matrix::compute(in, rows, columns, options, interrupt.hooks());
     reasons = reasons_against_one(in, computed);
     if (both_directions) reciprocity = matrix::reciprocity(in, computed);
@@ -66,8 +115,10 @@ py::tuple view_factor_matrix_of(const SharedScene& scene, const std::vector<std:
   });
   py::list sums;
   for (const matrix::Sum& sum : row_sums(made)) sums.append(py::make_tuple(sum.lower, sum.upper));
-  return py::make_tuple(to_list(made.factors.entries), to_list(made.back), to_list(made.open), to_list(made.buried),
-                        sums, reasons, to_tuple(reciprocity));
+  const py::tuple lists = py::make_tuple(to_list(made.factors.entries), to_list(made.back), to_list(made.open),
+                                       to_list(made.buried));
+  return lists + py::make_tuple(sums, reasons, to_tuple(reciprocity),
+                                std::make_shared<MadeMatrix>(scene, std::move(made), options.factors));
 }
 
 std::shared_ptr<SharedScene> with_two_sided_of(const SharedScene& scene, const std::vector<std::string>& names) {
@@ -102,6 +153,8 @@ py::tuple view_of(const SharedScene& scene, const std::array<double, 3>& point, 
 }  // namespace
 
 void bind_view_factors(py::module_& module) {
+  py::class_<MadeMatrix, std::shared_ptr<MadeMatrix>>(module, "MadeMatrix")
+      .def("write", &MadeMatrix::write, py::arg("path"), py::arg("extension"), py::arg("zone"));
   module.def("view_factor", &view_factor_of, py::arg("scene"), py::arg("from_patch"), py::arg("to_patch"),
              py::arg("accuracy"), py::arg("budget"), py::arg("certify"));
   module.def("view_factor_matrix", &view_factor_matrix_of, py::arg("scene"), py::arg("from_patches"),

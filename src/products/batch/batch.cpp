@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "batch/crew.h"
+#include "text/refuse.h"
+#include "whole_view/source_factors.h"
 
 namespace exactff::batch {
 namespace {
@@ -47,6 +49,23 @@ void exact_form_factors(
         exact_form_factor(scene, memory->receiver, *sources[s], options, memory->result, memory->workspace);
         take(i, s, memory->result);
       }
+    };
+  });
+}
+
+void sky_factors(const Scene& scene, const Receivers& receivers, const ExactOptions& options, const Run& run,
+                 const std::function<void(std::size_t receiver, const FormFactor& result)>& take) {
+  if (options.visible_fraction || options.gradient || options.vertices) {
+    text::refuse("a visible fraction or a gradient of the sky is requested", "the sky has no area, and no vertices",
+                 "leave it out, or leave out the sky");
+  }
+  const whole_view::SourceFactors sky(scene, {}, whole_view::Sky::kLastSource);
+  share(receivers.count, 1, "the sky", run, [&]() -> Body {
+    return [&, memory = std::make_shared<ExactMemory>(),
+            results = std::make_shared<whole_view::SourceFactors::Results>()](std::size_t i) {
+      receivers.get(i, memory->receiver);
+      sky.find_one(memory->receiver, 0, options, memory->result, *results);
+      take(i, memory->result);
     };
   });
 }

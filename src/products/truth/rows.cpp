@@ -115,6 +115,7 @@ std::string Rows::head() const {
       << rows_line(plan_)
       << "# units: form factors are pure numbers, radiosity is in the unit of Ke, lengths are in the unit of the "
          "scene\n"
+      << "# normals: nx,ny,nz are exact and of any length; --unit-normals adds unit vectors\n"
       << shard_line(plan_);
   for (const std::string& sentence : near_misses_) out << "# warning: " << text::csv_comment(sentence) << '\n';
   if (request_.unit_normals) {

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from . import _exactff
 from ._errors import refuse
+from ._files import require_free
 from ._pair import FormFactors, Status
 from ._receivers import Receivers
 
@@ -126,6 +127,10 @@ def check(truth: Union[_Path, FormFactors, ArrayLike], values: Union[_Path, Arra
     """
     if match not in ("receiver", "position"):
         refuse(f"match is {match!r}", "", "choose 'receiver' or 'position'")
+    read = [one for one in (truth, values) if isinstance(one, (str, os.PathLike))]
+    for file, others in ((write_baseline, read), (junit, [*read, *([] if baseline is None else [baseline])])):
+        if file is not None:
+            require_free(file, "replace", others)
     limits = _exactff.Limits()
     limits.max_abs, limits.max_rel, limits.rms, limits.eps_b = max_abs, max_rel, rms, eps_b
     limits.quantiles = list((quantiles or {}).items())

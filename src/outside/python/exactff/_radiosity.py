@@ -21,8 +21,8 @@ class Balance:
 
     ``emitted`` is the sum of ``absorbed`` and ``lost``, unless ``Radiosity.reasons_against_balance`` says why it need not be. Then no
     part is above what is emitted, and none is ever below 0; but a Kd above 1 may make ``absorbed`` negative, and, in a
-    channel without a bound, every upper bound infinite. ``lost`` is told apart where one of ``back`` and ``open`` is
-    proved to be nothing, or if ``backs=True`` was asked for. Bounds are as strong as ``Radiosity.claim_of_balance``.
+    channel without a bound, every upper bound infinite. ``back`` and ``open`` are known apart where one of them is
+    proved to be zero, or with ``backs=True``. Bounds are as strong as ``Radiosity.claim_of_balance``.
     """
 
     emitted: Floats  #: (3, 2)

@@ -26,8 +26,14 @@ class Receivers:
 
     @property
     def normals(self) -> Floats:
-        """(n, 3), of any length."""
+        """(n, 3), exact and of any length: those of receivers on a face are as long as its area. See `unit_normals`."""
         return self._list.normals()
+
+    @property
+    def unit_normals(self) -> Floats:
+        """(n, 3): the normals scaled to length 1, each component correctly rounded. For other programs; exact form factors
+        belong to `normals`."""
+        return self._list.unit_normals()
 
     @property
     def on(self) -> Ints:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from . import _arrays, _exactff, _geometry
 from ._arrays import Floats, Ints, Names
 from ._errors import refuse, warn
+from ._files import check_existing, require_free
 from ._pair import FormFactor, FormFactors, Status, _Again
 from ._progress import Progress, shown
 from ._receivers import Receivers
@@ -47,6 +48,7 @@ class Scene:
     _scene: _exactff.Scene
     #: How far corners of cells lie from where they belong, at most, in a scene made by `divided`.
     largest_deviation: float = 0.0
+    _read: tuple[str, ...] = ()  # files that the scene was read from
 
     def __init__(self, vertices: ArrayLike, faces: Any, patch: Any = None, names: Any = None,
                  materials: Optional[Mapping[str, Union[Material, Mapping[str, Any]]]] = None, *,
@@ -73,8 +75,10 @@ class Scene:
         Raises InputError with every problem and its line. Warnings of the file are ModellingWarning."""
         if patches not in ("groups", "faces"):
             refuse(f"patches is {patches!r}", "", "choose 'groups' or 'faces'")
-        made = _exactff.Scene.read(os.fspath(path), patches == "faces", skip_bad_faces)
-        return cls._made(made, os.path.basename(os.fspath(path)))
+        file = os.path.abspath(os.fspath(path))
+        scene = cls._made(_exactff.Scene.read(os.fspath(path), patches == "faces", skip_bad_faces), os.path.basename(file))
+        scene._read = (file,)
+        return scene
 
     @classmethod
     def from_model(cls, text: str, *, patches: Literal["groups", "faces"] = "groups") -> Scene:
@@ -128,7 +132,7 @@ class Scene:
         return self._scene.face_name(face)
 
     def faces_of(self, name: str) -> list[int]:
-        """Indices of the faces of ``NAME`` or ``NAME:k``, without ignored ones."""
+        """Indices of the faces of ``NAME``, ``NAME:k`` or a pattern, without ignored ones."""
         return self._scene.faces_of(name)
 
     @property
@@ -147,22 +151,42 @@ class Scene:
                                      for kind, message, objects, flag in scene.findings()),
                       warnings=tuple(scene.warnings()))
 
+    def write(self, path: Union[str, os.PathLike[str]], *, encoding: Literal["default", "text", "binary"] = "default",
+              existing: Literal["refuse", "replace"] = "refuse") -> None:
+        """Writes the scene as ``exactff convert`` does; the extension is .obj (with .mtl), .ply, .stl, .off or .vs3.
+
+        Doubles are kept, except in binary STL. `encoding` is for PLY (default: binary) and STL (default: text). What the
+        format cannot hold, such as materials, is a ModellingWarning. A file appears complete or not at all. Raises
+        InputError for another extension, for a file that exists unless ``existing="replace"``, and always for a file that
+        this scene was read from."""
+        check_existing(existing)
+        if encoding not in ("default", "text", "binary"):
+            refuse(f"encoding is {encoding!r}", "", "choose 'default', 'text' or 'binary'")
+        for loss in self._scene.write(os.fspath(path), encoding, lambda file: require_free(file, existing, self._read)):
+            warn(loss)
+
     # --- other scenes ---
 
-    def with_flipped(self, *names: str) -> Scene:
-        """The same scene with these patches or faces turned round: their fronts become their backs."""
+    def with_flipped(self, *names: Union[str, Sequence[str]]) -> Scene:
+        """The same scene with these patches or faces turned round: their fronts become their backs. Give names, patterns
+        or lists of them; "all" is every patch."""
         return self._changed(self._scene.with_flipped, names)
 
-    def with_transparent(self, *names: str) -> Scene:
+    def with_transparent(self, *names: Union[str, Sequence[str]]) -> Scene:
         """The same scene with these patches or faces transparent: they hide nothing. They may still be sources, and
-        have receivers on them."""
+        have receivers on them. Names as in `with_flipped`."""
         return self._changed(self._scene.with_transparent, names)
 
-    def with_two_sided(self, *names: str) -> Scene:
+    def with_two_sided(self, *names: Union[str, Sequence[str]]) -> Scene:
         """The same scene with the backs of these patches or faces as further patches, ``NAME (back)``: every face gets a
         twin that is turned round. Factors between other patches stay the same numbers, perhaps in other intervals; what
-        met the backs meets the twins. Raises InputError for a face that is not planar."""
+        met the backs meets the twins. Names as in `with_flipped`."""
         return self._changed(lambda listed: _exactff.with_two_sided(self._scene, listed), names)
+
+    def triangulated(self) -> Scene:
+        """The same scene with every face cut into triangles at its own vertices; a face that is not planar becomes the
+        triangles that it stands for. No form factor changes. Faces are numbered anew."""
+        return self._changed(lambda _: self._scene.triangulated(), ("all",))
 
     def divided(self, length: float) -> Scene:
         """The same scene with every face cut into cells, no side of which is longer than `length` (but for one part in
@@ -171,18 +195,19 @@ class Scene:
         then are triangles."""
         changed = Scene.__new__(Scene)
         changed._scene, changed.largest_deviation = self._scene.divided(float(length))
-        changed.name = self.name
+        changed.name, changed._read = self.name, self._read
         return changed
 
     def cells_of(self, name: str) -> tuple[str, ...]:
         """The names of the cells of a divided patch, or the name itself if it is a patch or ``NAME:k``."""
         return tuple(self._scene.cells_of(name))
 
-    def _changed(self, change: Any, names: Sequence[str]) -> Scene:
-        if not names:
+    def _changed(self, change: Any, names: Sequence[Union[str, Sequence[str]]]) -> Scene:
+        listed = [name for one in names for name in _arrays_names(one)]
+        if not listed:
             return self
         changed = Scene.__new__(Scene)
-        changed._scene, changed.name = change(list(names)), self.name
+        changed._scene, changed.name, changed._read = change(listed), self.name, self._read
         return changed
 
     @property
@@ -204,7 +229,7 @@ class Scene:
 
         Parameters
         ----------
-        on : names ``NAME`` or ``NAME:k``; "all" for every patch
+        on : names ``NAME`` or ``NAME:k``, or patterns; "all" for every patch
         grid : (columns, rows), at the centres of the cells of each region (neighbouring faces in one plane)
         vertices : at every corner of every face
         centres : one in the middle of each region
@@ -269,7 +294,9 @@ class Scene:
         ----------
         points : (n, 3), in the scene's unit of length; any leading shape and any strides
         normals : (n, 3) of any length but 0, or (3,) for all; broadcast against `points`
-        sources : names ``NAME`` or ``NAME:k``; "all" for every patch; default: every patch that emits
+        sources : names ``NAME`` or ``NAME:k``, or patterns such as ``"lamp_*"`` for all that match; "all" for every patch;
+            "sky" for what is open, all directions that meet nothing (unless a patch has this name), without `fraction` and
+            `gradient`; default: every patch that emits
         on : own faces, which neither hide nor light the receiver: None, a name such as "floor" or "floor:1+2" for
             all; "auto" (or "auto:DISTANCE") to find them; an integer array of the receivers' shape, or with one more
             axis for several faces each, where -1 stands for none; or a list with a name, indices or None for each
@@ -294,7 +321,7 @@ class Scene:
         """
         scene = self if transparent is None else self.with_transparent(*_arrays_names(transparent))
         shape, p, n = _arrays.receivers(points, normals)
-        names = self._sources(sources)
+        names = self._sources(sources, sky=True)
         count = _arrays.thread_count(threads)
         own = scene._own_faces(on, shape, p, n, count)
         scene._warn_of_misses(p, n, own)
@@ -336,12 +363,12 @@ class Scene:
 
     # --- names and own faces ---
 
-    def _named(self, names: list[str]) -> list[str]:
-        """The names, with every patch that has area in place of "all"."""
-        if "all" not in names or "all" in self.names:
-            return names
-        every = [patch.name for patch in self.patches if patch.area > 0.0]
-        return [name for one in names for name in (every if one == "all" else [one])]
+    def _named(self, names: list[str], sky: bool = False) -> list[str]:
+        """The names, with all that they match in place of patterns and "all"; and "sky", if it is allowed."""
+        if sky and "sky" in names and "sky" not in self.names:
+            at = names.index("sky")
+            return self._named(names[:at]) + ["sky"] + self._named(names[at + 1:])
+        return self._scene.names_like(names)
 
     def _source(self, name: Optional[str]) -> str:
         if name is None:
@@ -354,14 +381,14 @@ class Scene:
             refuse(f"source is {name!r}", "it is the name of a patch or face", "for example 'light'")
         return name
 
-    def _sources(self, sources: Names) -> list[str]:
+    def _sources(self, sources: Names, sky: bool = False) -> list[str]:
         if sources is None:
             names = list(self.emitters)
             if not names:
                 refuse("no patch of the scene emits", "without sources, every emitting patch is one",
                        "name them: sources=['window']")
             return names
-        names = self._named(_arrays_names(sources))
+        names = self._named(_arrays_names(sources), sky)
         if not names:
             refuse("sources is empty", "there would be no values", "name a patch, or leave it out")
         twice = [name for i, name in enumerate(names) if name in names[:i]]

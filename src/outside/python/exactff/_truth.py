@@ -8,6 +8,7 @@ from typing import Literal, NamedTuple, Union
 from . import _arrays, _exactff
 from ._arrays import Names
 from ._errors import refuse, warn
+from ._files import require_free
 from ._progress import Progress, shown
 from ._receivers import Receivers
 from ._scene import Scene
@@ -34,6 +35,7 @@ def truth(scene: Scene, receivers: Receivers, path: Union[str, os.PathLike[str]]
 
     Parameters
     ----------
+    sources : as in :meth:`Scene.form_factors`; the rows of "sky" are the last of each receiver
     receivers : from :meth:`Scene.receivers`, :meth:`Scene.read_receivers` or :meth:`Scene.receivers_at`
     unoccluded, fraction, unit_normals, uv, gradient : additional columns
     existing : what to do if there is a file or a journal of an interrupted run: "refuse", "resume" or "replace"
@@ -45,9 +47,10 @@ def truth(scene: Scene, receivers: Receivers, path: Union[str, os.PathLike[str]]
     wanted = {"unoccluded": unoccluded, "visible_fraction": fraction, "unit_normals": unit_normals, "uv": uv,
               "gradient": gradient}
     count = _arrays.thread_count(threads)
+    require_free(path, "replace", scene._read)
     with shown(progress, "row") as tell:
         rows, by_status, resumed, seconds = _exactff.write_truth(
-            scene._scene, scene.name, receivers._list, receivers.name, scene._sources(sources), os.fspath(path),
+            scene._scene, scene.name, receivers._list, receivers.name, scene._sources(sources, sky=True), os.fspath(path),
             existing, [column for column, is_wanted in wanted.items() if is_wanted], count, tell)
     certified, zero, underflow, not_certified = by_status
     if not_certified:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Callable, Iterator, Mapping, NamedTuple, Optional
+import os
+from dataclasses import dataclass, field
+from typing import Any, Callable, Iterator, Literal, Mapping, NamedTuple, Optional
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,11 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from . import _arrays, _exactff
 from ._arrays import Floats, Names
 from ._errors import refuse, warn
+from ._files import Path, check_existing, require_free
 from ._pair import Status
 from ._progress import Progress, shown
 from ._scene import On, Scene
 
 _MOST_BITS = 1 << 24
+_MATRIX_FILES = (".csv", ".npz", ".idf", ".out", ".vtp", ".vtu")
 
 
 class ViewFactor(NamedTuple):
@@ -88,7 +91,34 @@ class ViewFactorMatrix:
                 raise KeyError(name)
         return self._entries[self.from_names.index(names[0])][self.to_names.index(names[1])]
 
-    _entries: tuple[tuple[ViewFactor, ...], ...]
+    def save(self, path: Path, *, existing: Literal["refuse", "replace"] = "refuse", zone: str = "Zone 1") -> None:
+        """Writes the matrix to a file, as ``exactff matrix`` does. The extension says which:
+
+        - ``.csv``: names, values, bounds, claims, areas; doubles read back to the same bits
+        - ``.npz``: a sparse matrix for ``scipy.sparse.load_npz``, with names, areas, radii, claims
+        - ``.idf``: EnergyPlus' ``ZoneProperty:UserViewFactors:bySurfaceName``, for `zone`; rows and columns must be the same
+        - ``.out``: View3D's output, six decimals; rows and columns must be the same
+        - ``.vtp``, ``.vtu``: the one row as values on the scene, for ParaView
+
+        A file appears complete or not at all. Raises InputError for another extension, for a file that exists unless
+        ``existing="replace"``, always for a file that the scene was read from, and for ``.idf`` and ``.out`` if fronts of two
+        patches overlap, since such rows exceed 1."""
+        check_existing(existing)
+        if self._made is None:
+            refuse("the matrix was copied or pickled", "a copy has the numbers alone", "save the first one")
+        extension = os.path.splitext(os.fspath(path))[1].lower()
+        if extension not in _MATRIX_FILES:
+            refuse(f"{os.fspath(path)}: no kind of matrix file has the extension {extension!r}",
+                   "the extension says what is written", f"name a file {', '.join(_MATRIX_FILES)}")
+        require_free(path, existing, self._read)
+        self._made.write(os.fspath(path), extension, zone)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_made": None}
+
+    _entries: tuple[tuple[ViewFactor, ...], ...] = field(repr=False)
+    _made: Optional[_exactff.MadeMatrix] = field(repr=False, compare=False)
+    _read: tuple[str, ...] = field(repr=False, compare=False)  # files that the scene was read from
 
 
 class Share(NamedTuple):
@@ -180,12 +210,12 @@ def view_factor(scene: Scene, a: str, b: str, accuracy: float = 1e-6, *, budget:
     return f
 
 
-def _patches(scene: Scene, names: Names, what: str) -> list[str]:
+def _patches(scene: Scene, names: Names, what: str, sky: bool = False) -> list[str]:
     listed = ["all"] if names is None else [names] if isinstance(names, str) else list(names)
     for name in listed:
         if not isinstance(name, str):
             refuse(f"{what} holds {name!r}", "it lists names of patches or faces", "for example ['floor', 'light']")
-    return scene._named(listed)
+    return scene._named(listed, sky)
 
 
 def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Names = None, *, accuracy: float = 1e-6,
@@ -195,8 +225,9 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
 
     Parameters
     ----------
-    from_patches, to_patches : names of the rows and columns; "all", the default: every patch with area. With `backs`
-        or `sky`, ``to_patches=[]`` computes these alone.
+    from_patches, to_patches : names of the rows and columns, or patterns such as ``"wall_*"``; "all", the default: every
+        patch with area. "sky" in `to_patches` is the same as ``sky=True``. With `backs` or `sky`, ``to_patches=[]``
+        computes these alone.
     accuracy, budget, certify : of each entry, as in :func:`view_factor`
     backs, sky : also compute what meets the backs of faces, and what is open
     both_directions : compute F_ij and F_ji apart, so that ``reciprocity`` tests one against the other
@@ -205,9 +236,12 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
 
     Returns arrays of shape (rows, columns). Raises InputError; entries wider than the accuracy are a ModellingWarning.
     """
-    rows, columns = _patches(scene, from_patches, "from_patches"), _patches(scene, to_patches, "to_patches")
+    rows, columns = _patches(scene, from_patches, "from_patches"), _patches(scene, to_patches, "to_patches", sky=True)
+    if "sky" in columns and "sky" not in scene.names:
+        columns.remove("sky")
+        sky = True
     with shown(progress, "view factor") as tell:
-        entries, back, free, below, sums, reasons, mutual = _exactff.view_factor_matrix(
+        entries, back, free, below, sums, reasons, mutual, made = _exactff.view_factor_matrix(
             scene._scene, rows, columns, _accuracy(accuracy), _budget(budget), bool(certify), bool(backs), bool(sky),
             bool(both_directions), _arrays.thread_count(threads), tell)
     table = [ViewFactor(*entry) for entry in entries]
@@ -228,7 +262,7 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
         array(lambda f: f.way, np.str_), array(lambda f: f.accurate, np.bool_), array(lambda f: f.limit, np.str_),
         np.array([row[0].area_from for row in (by_rows if columns else zip(lists[0] or lists[1] or lists[2] or ()))]),
         np.array([f.area_to for f in by_rows[0]] if by_rows else []), lists[0], lists[1], lists[2],
-        np.array(sums, np.float64).reshape(-1, 2), tuple(reasons), reciprocity, by_rows)
+        np.array(sums, np.float64).reshape(-1, 2), tuple(reasons), reciprocity, by_rows, made, scene._read)
 
 
 def _reciprocity(found: Any, rows: list[str], columns: list[str]) -> Reciprocity:
