@@ -34,31 +34,29 @@ namespace exactff::cli {
 namespace {
 
 constexpr const char* kMatrixFooter =
-    "F_ij is the share of the light leaving patch i, in all directions, that reaches patch j: the mean over i of the\n"
-    "form factor from a point to j. Its interval is proved or estimated. 'zero' is proved. 'estimated' says that the\n"
-    "error is an estimate, with all roundings in it: by cells, on each of which what is seen is proved, from "
-    "rules of\n"
-    "quadrature; or, where so much lies between that this costs less, by points, from the exact form factors of\n"
-    "random points, but with a probability of 1e-6. A warning counts the entries that are wider than the accuracy,\n"
-    "in this direction or from the other patch.\n"
-    "With --claim certified, or --certify, every entry is 'zero' or 'certified': the remainder of the quadrature and\n"
-    "all roundings are proved as well. It costs up to a few times as much, and less if the accuracy is below 1e-9.\n"
-    "With --backs and --to all,sky each row also has what meets the backs of faces, and what is open. Then it must\n"
-    "add up to 1; if a row does not, the exit code is 1. Likewise if the bounds of the two directions of a pair\n"
-    "contradict each other, with --both-directions. --two-sided wall adds the patch 'wall (back)', for rows and\n"
-    "columns.\n"
-    "With -o, finished pairs are kept in FILE.part until FILE is complete; after an interruption, the same command "
-    "with\n"
-    "--resume continues from there. On several machines: `mpirun -n 4 exactff matrix ... -o FILE`, or separate jobs\n"
-    "with --shard 1/4, 2/4, ... whose files `exactff merge` joins. With --resume and a complete FILE, also a merged\n"
-    "one, the other files are made again. The bytes depend on none of this.\n"
+    "F_ij is the share of the light leaving patch i, in all directions, that reaches patch j: the mean over i of\n"
+    "the form factor from a point to j. Its interval is proved or estimated. 'zero' is proved. 'estimated' means\n"
+    "that the error is an estimate, with all roundings in it. By cells, what each cell sees is proved, and the\n"
+    "error comes from rules of quadrature. By points, which cost less behind many occluders, the interval comes\n"
+    "from exact form factors at random points; it misses with a probability of at most 1e-6. A warning counts the\n"
+    "entries that are wider than the accuracy, in this direction or from the other patch.\n"
+    "With --claim certified, or --certify, every entry is 'zero' or 'certified': the remainder of the quadrature\n"
+    "and all roundings are proved as well. It takes up to a few times as long, and less time if the accuracy is\n"
+    "below 1e-9. With --backs and --to all,sky each row also has the share that meets backs of faces, and the share\n"
+    "that meets nothing. Then it must add up to 1; if a row does not, the exit code is 1. Likewise if the bounds of\n"
+    "the two directions of a pair contradict each other, with --both-directions. --two-sided wall adds the patch\n"
+    "'wall (back)', for rows and columns.\n"
+    "With -o, finished pairs are kept in FILE.part until FILE is complete; after an interruption, the same command\n"
+    "with --resume continues from there. On several machines: `mpirun -n 4 exactff matrix ... -o FILE`, or separate\n"
+    "jobs with --shard 1/4, 2/4, ... whose files `exactff merge` joins. With --resume and a complete FILE, also a\n"
+    "merged one, the other files are made again. The bytes depend on none of this.\n"
     "View3D's output has six decimals and no bounds; its rows add up to 1 only within that. EnergyPlus reads the\n"
-    "names of patches as names of surfaces. Where fronts of two patches overlap in one plane, such as a window and "
-    "its\n"
-    "wall, both count in full and rows exceed 1: a warning names them, and neither file is written without --force.\n"
+    "names of patches as names of surfaces. Where fronts of two patches overlap in one plane, such as a window and\n"
+    "its wall, both count in full and rows exceed 1: a warning names them, and neither file is written without\n"
+    "--force.\n"
     "\n"
     "Examples:\n"
-    "  exactff matrix data/scenes/cornell_box.obj --from light --to floor,ceiling --accuracy 1e-4\n"
+    "  exactff matrix data/scenes/cornell_box.obj --from light --to 'floor,*_block' --accuracy 1e-4\n"
     "  exactff matrix data/scenes/formats/test4.vs3 --backs --to all,sky --npz build/factors.npz";
 
 constexpr std::size_t kMostShown = 12;  // rows and columns of the printed table
@@ -405,7 +403,9 @@ Command add_matrix(CLI::App& app) {
   command->footer(kMatrixFooter);
   args->scene.add_to(*command);
   args->scene.add_divide_to(*command);
-  command->add_option("--from", args->from, "Rows: patches or faces, a name, a comma list of names, or all")
+  command
+      ->add_option("--from", args->from,
+                   "Rows: names of patches or faces, separated by commas, or all; * ? [...] as in file names")
       ->type_name("NAME")
       ->capture_default_str();
   command->add_option("--to", args->to, "Columns, in the same way; sky is what is open")
