@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "kernel/vec.h"
@@ -17,17 +18,16 @@ struct Chord {
   double smaller_area = 0.0;
 };
 
-// A polygon around the origin, in a frame where its coordinates are at most 1.
+// A polygon around the origin, in a frame where its coordinates are at most 2.
 class FlatPolygon {
  public:
   FlatPolygon(const Polygon& polygon, const CutPoints& points) {
-    const Vec3 origin = kernel::scaled(points[polygon.front()], 0.5);
+    const Vec3& origin = points[polygon.front()];
     for (const std::uint32_t v : polygon) {
-      at_.push_back(kernel::difference(kernel::scaled(points[v], 0.5), origin));
-      extent_ = std::max(extent_, kernel::max_norm(at_.back()));
+      extent_ = std::max(extent_, kernel::max_norm(kernel::difference(points[v], origin)));
     }
-    for (Vec3& x : at_) x = {x.x / extent_, x.y / extent_, x.z / extent_};
-    extent_ *= 2.0;
+    extent_ = std::min(extent_, std::numeric_limits<double>::max());
+    for (const std::uint32_t v : polygon) at_.push_back(difference_over(points[v], origin, extent_));
     Vec3 twice_area;
     for (std::size_t k = 0; k < size(); ++k) {
       twice_area = kernel::sum(twice_area, kernel::cross(at_[k], at_[(k + 1) % size()]));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "kernel/rational_vec.h"
@@ -15,7 +16,13 @@ using kernel::RationalVec3;
 
 bool comes_before(const Vec3& a, const Vec3& b) { return std::tuple(a.x, a.y, a.z) < std::tuple(b.x, b.y, b.z); }
 
-double root_of(const Rational& square) { return std::sqrt(kernel::nearest_double(square)); }
+// Scaled so that the square is about 1. Positive unless the square is 0.
+double root_of(const Rational& square) {
+  if (kernel::sign(square) == 0) return 0.0;
+  const long exponent = (kernel::bit_length(square.get_num()) - kernel::bit_length(square.get_den())) / 2;
+  const double root = std::sqrt(kernel::nearest_double(kernel::times_power_of_two(square, -2 * exponent)));
+  return std::max(std::ldexp(root, static_cast<int>(exponent)), std::numeric_limits<double>::denorm_min());
+}
 
 RationalVec3 point_of_segment(const Vec3& p, const Vec3& q, std::size_t k, std::size_t n) {
   const RationalVec3 from = kernel::to_rational(p);
@@ -30,8 +37,16 @@ Vec3 nearest(const RationalVec3& a) {
 
 }  // namespace
 
+Vec3 difference_over(const Vec3& to, const Vec3& from, double length) {
+  const auto quotient = [length](double a, double b) {
+    const double difference = a - b;
+    return std::isfinite(difference) ? difference / length : (0.5 * a - 0.5 * b) / (0.5 * length);
+  };
+  return {quotient(to.x, from.x), quotient(to.y, from.y), quotient(to.z, from.z)};
+}
+
 std::size_t CutPoints::parts(std::uint32_t a, std::uint32_t b) const {
-  const double ratio = kernel::distance(vertices_[a], vertices_[b]) / length_;
+  const double ratio = kernel::distance(difference_over(vertices_[b], vertices_[a], length_), {});
   return std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(ratio * (1.0 - kTolerance))));
 }
 
@@ -56,7 +71,7 @@ double distance_from_plane(const Vec3& x, const Vec3& a, const Vec3& b, const Ve
   const RationalVec3 origin = kernel::to_rational(a);
   const RationalVec3 normal = cross(kernel::to_rational(b) - origin, kernel::to_rational(c) - origin);
   const Rational height = dot(normal, kernel::to_rational(x) - origin);
-  return kernel::sign(height) == 0 ? 0.0 : root_of(height * height / dot(normal, normal));
+  return root_of(height * height / dot(normal, normal));
 }
 
 bool is_planar(const CutPoints& points, std::span<const std::uint32_t> polygon) {

@@ -13,6 +13,9 @@ namespace exactff::division {
 // One part in 10^9 is allowed, so that roundings of a length add no cell.
 inline constexpr double kTolerance = 1e-9;
 
+// The vector between two points, over a length: neither overflows, nor underflows where the quotient is not tiny.
+[[nodiscard]] Vec3 difference_over(const Vec3& to, const Vec3& from, double length);
+
 // The vertices of a scene, and those that cells add.
 class CutPoints {
  public:
@@ -40,6 +43,7 @@ class CutPoints {
 };
 
 // The distance of a point from the plane through three others, computed exactly and rounded: 0 only if it is in it.
+// Smaller than all doubles, it is the smallest positive one.
 [[nodiscard]] double distance_from_plane(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c);
 
 // Whether all corners of a polygon lie exactly in one plane.

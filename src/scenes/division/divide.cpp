@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -27,25 +28,31 @@ using division::EdgeCuts;
 using division::Polygon;
 using Rings = std::vector<std::vector<std::uint32_t>>;
 
-double perimeter(const Scene& scene, const Piece& piece) {
+// An estimate of the number of a piece's cells and of their points along edges.
+double expected_cells(const Scene& scene, const Piece& piece, double length) {
   const std::span<const std::uint32_t> corners = scene.corners(piece);
-  double sum = 0.0;
+  const auto at = [&](std::size_t c) {
+    const Vec3& origin = scene.vertices()[corners.front()];
+    return division::difference_over(scene.vertices()[corners[c % corners.size()]], origin, length);
+  };
+  Vec3 twice_area;
+  double perimeter = 0.0;
   for (std::size_t c = 0; c < corners.size(); ++c) {
-    sum += kernel::distance(scene.vertices()[corners[c]], scene.vertices()[corners[(c + 1) % corners.size()]]);
+    twice_area = kernel::sum(twice_area, kernel::cross(at(c), at(c + 1)));
+    perimeter += kernel::distance(at(c), at(c + 1));
   }
-  return sum;
+  return 0.5 * kernel::distance(twice_area, {}) + perimeter;
 }
 
-// An estimate of the number of cells and of their points along edges.
 double expected_cells(const Scene& scene, double length) {
   double sum = 0.0;
-  for (const Face& face : scene.faces()) sum += face.area / length / length;
-  for (const Piece& piece : scene.pieces()) sum += perimeter(scene, piece) / length;
+  for (const Piece& piece : scene.pieces()) sum += expected_cells(scene, piece, length);
   return sum;
 }
 
 void require_possible(const Scene& scene, double length) {
   constexpr double kMostCells = 4e6, kLeastShare = 0x1p-32;
+  constexpr double kLeastLength = 0x1p21 * std::numeric_limits<double>::denorm_min();  // as for a share of 2^-32
   if (!(length > 0.0) || !std::isfinite(length)) {
     text::refuse("a scene cannot be divided into cells of length " + text::shortest(length),
                  "it is a positive length in the scene's unit",
@@ -56,7 +63,7 @@ void require_possible(const Scene& scene, double length) {
     text::refuse("divided by " + text::shortest(length) + ", the scene has " + about + " cells",
                  "at most " + text::short_number(kMostCells) + " are made", "give a larger length");
   }
-  if (length < kLeastShare * extent(scene).largest) {
+  if (length / extent(scene).largest < kLeastShare || length < kLeastLength) {
     text::refuse("the length " + text::shortest(length) + " is too small for the scene's coordinates",
                  "corners of cells are rounded to doubles, which are too far apart there", "give a larger length");
   }

@@ -9,6 +9,7 @@
 #include "exactff/scene_files.h"
 #include "kernel/vec.h"
 #include "support/complaint.h"
+#include "support/random_scenes.h"
 
 namespace exactff {
 namespace {
@@ -193,6 +194,53 @@ TEST(Division, WhatIsFlippedOrTransparentStaysSo) {
   EXPECT_EQ(cells.transparent(), cells.select_all("left"));
   for (const Selection& cell : cells.select_all("floor")) {
     EXPECT_LT(cells.face(cells.faces_of(cell).front()).newell.y, 0.0);
+  }
+}
+
+// The same cells with the same corners, scaled, to the ends of the range of doubles.
+TEST(Division, CommutesWithPowersOfTwo) {
+  std::size_t rounded = 0;
+  for (std::uint64_t s = 0; s < validation::scaled_count(60); ++s) {
+    generate::Random random(validation::seed_of(s));
+    const generate::PlainScene plain = validation::random_scene(random);
+    const Scene scene = generate::build(plain);
+    double largest = 0.0;
+    for (const Vec3& v : scene.vertices()) largest = std::max(largest, kernel::max_norm(v));
+    const double length = largest / static_cast<double>(1 + random.below(9));
+    const DividedScene divided = exactff::divided(scene, length);
+    for (const int exponent : {-940, -500, 500, 1023 - std::ilogb(largest)}) {
+      generate::PlainScene copy = plain;
+      generate::scale(copy, std::ldexp(1.0, exponent));
+      const DividedScene scaled = exactff::divided(generate::build(copy), std::ldexp(length, exponent));
+      EXPECT_EQ(scaled.cells, divided.cells) << s << ' ' << exponent;
+      EXPECT_EQ(scaled.faces_cut, divided.faces_cut) << s << ' ' << exponent;
+      EXPECT_EQ(scaled.largest_deviation, std::ldexp(divided.largest_deviation, exponent)) << s << ' ' << exponent;
+      ASSERT_EQ(scaled.scene.vertices().size(), divided.scene.vertices().size()) << s << ' ' << exponent;
+      for (std::size_t f = 0; f < divided.scene.faces().size(); ++f) {
+        ASSERT_EQ(scaled.scene.faces()[f].rings, divided.scene.faces()[f].rings) << s << ' ' << exponent;
+      }
+      for (std::size_t v = 0; v < divided.scene.vertices().size(); ++v) {
+        const Vec3 &a = divided.scene.vertices()[v], &b = scaled.scene.vertices()[v];
+        const auto is_scaled = [&](double Vec3::*c) { return b.*c == std::ldexp(a.*c, exponent); };
+        ASSERT_TRUE(is_scaled(&Vec3::x) && is_scaled(&Vec3::y) && is_scaled(&Vec3::z)) << s << ' ' << exponent;
+      }
+    }
+    rounded += divided.largest_deviation > 0.0 ? 1 : 0;
+  }
+  EXPECT_GE(rounded, 10U);
+}
+
+// Nothing overflows on the way, and no error is so small that it counts as none.
+TEST(Division, TellsItsDeviationAtTheEndsOfTheRange) {
+  for (const double size : {1.7e308, 7e300, 0x1p-900, 0x1p-1040}) {
+    const Scene scene = scene_of({{-size, 0, 0}, {size, 0, 0}, {size, size, 0}, {-size, size, 0}}, {{{0, 1, 2, 3}}});
+    const DividedScene thirds = divided(scene, 0.7 * size);
+    EXPECT_EQ(thirds.cells, 6U) << size;
+    EXPECT_GT(thirds.largest_deviation, 0.0) << size;
+    EXPECT_LE(thirds.largest_deviation / size, 0x1p-34) << size;  // 2^-1074 of 2^-1040
+    const DividedScene halves = divided(scene, 1.05 * size);
+    EXPECT_EQ(halves.cells, 2U) << size;
+    EXPECT_EQ(halves.largest_deviation, 0.0) << size;
   }
 }
 
