@@ -196,6 +196,97 @@ TEST(ViewFactors, ASmallerAccuracyNeverWidensThem) {
   EXPECT_GE(by_points, 5U);
 }
 
+// A square with slivers close above it, one of which may be turned round, and perhaps a wall.
+generate::PlainScene slivers(Random& random) {
+  generate::PlainScene plain;
+  const auto add = [&](const std::string& name, const std::vector<Vec3>& corners) {
+    generate::Ring ring;
+    for (const Vec3& corner : corners) {
+      ring.push_back(static_cast<std::uint32_t>(plain.vertices.size()));
+      plain.vertices.push_back(corner);
+    }
+    plain.patch(name).faces.push_back({{ring}});
+  };
+  const auto small = [&](int most) { return std::pow(10.0, -most * random.unit()); };
+  add("source", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  for (std::uint64_t k = 0, count = 1 + random.below(3); k < count; ++k) {
+    const double x = random.unit(), y = 0.5 * random.unit(), z = small(8), width = small(8), length = 0.5 * small(3);
+    std::vector<Vec3> corners{{x, y, z}, {x, y + length, z}, {x + width, y, z + (random.one_in(2) ? width : 0.0)}};
+    if (random.one_in(4)) std::ranges::reverse(corners);
+    add("sliver" + std::to_string(k), corners);
+  }
+  if (random.one_in(3)) add("wall", {{1.5, 0, 0}, {1.5, 1, 0}, {1.5, 1, 1}, {1.5, 0, 1}});
+  return plain;
+}
+
+// Of each matrix: what a row is to two patches, to backs and to what is open.
+std::vector<ViewFactor> entries_of(const matrix::Matrix& matrix) {
+  std::vector<ViewFactor> all = matrix.factors.entries;
+  all.insert(all.end(), matrix.back.begin(), matrix.back.end());
+  all.insert(all.end(), matrix.open.begin(), matrix.open.end());
+  return all;
+}
+
+// Whatever the budget, the claim and the ways are. Sums and rests may be rounded.
+TEST(ViewFactors, ASmallerAccuracyWidensNoEntryOfAMatrix) {
+  constexpr std::array<std::size_t, 6> kBudgets{3, 10, 40, 100, 400, 3000};  // the largest only in long runs
+  constexpr double kRounded = 0x1p-50;
+  std::size_t limited = 0, narrowed = 0;
+  for (std::uint64_t s = 0; s < scaled_count(14); ++s) {
+    Random random(seed_of(s));
+    const Scene scene = generate::build(s % 3 == 0 ? random_scene(random) : slivers(random));
+    const Selection source = scene.select("source"), other = patch_of(scene, random.below(scene.patches().size()));
+    if (!has_area(scene, source) || !has_area(scene, other)) continue;
+    const std::array<Selection, 2> rows{source, other};
+    matrix::Options options{.backs = true, .open = true, .threads = 1};
+    options.factors.budget = kBudgets[random.below(s < 14 ? 3 : 6)];
+    options.factors.both_directions = random.one_in(2);
+    options.factors.certify = random.one_in(4);
+    std::vector<ViewFactor> before;
+    for (const double accuracy : {2e-2, 1e-4, 6e-5, 1e-7, 1e-9}) {
+      options.factors.accuracy = accuracy;
+      const std::vector<ViewFactor> now = entries_of(matrix::compute(scene, rows, rows, options));
+      for (std::size_t e = 0; e < now.size(); ++e) {
+        const double width = now[e].upper - now[e].lower;
+        limited += now[e].accurate ? 0 : 1;
+        if (before.empty()) continue;
+        const double width_before = before[e].upper - before[e].lower;
+        EXPECT_LE(width, width_before + (e < 4 ? 0.0 : kRounded)) << s << ", entry " << e << ", " << accuracy;
+        narrowed += width < width_before ? 1 : 0;
+      }
+      before = now;
+    }
+  }
+  EXPECT_GE(limited, 40U);
+  EXPECT_GE(narrowed, 10U);
+}
+
+// F_ij is at most A_j / A_i, since F_ji is at most 1; and what is open has one direction.
+TEST(ViewFactors, AreBoundedByAreasInEitherDirection) {
+  std::size_t small = 0;
+  for (std::uint64_t s = 0; s < scaled_count(30); ++s) {
+    Random random(seed_of(s));
+    const Scene scene = generate::build(slivers(random));
+    const std::array<Selection, 2> rows{scene.select("source"), scene.select("sliver0")};
+    matrix::Options options{.backs = true, .open = true, .threads = 1};
+    options.factors = {.accuracy = 1e-4, .budget = 1 + random.below(60)};
+    const matrix::Matrix one = matrix::compute(scene, rows, rows, options);
+    options.factors.both_directions = true;
+    const matrix::Matrix both = matrix::compute(scene, rows, rows, options);
+    for (const matrix::Matrix* found : {&one, &both}) {
+      const ViewFactor& f = found->factors.at(0, 1);
+      EXPECT_LE(f.upper, f.area_to / f.area_from * kRoundings) << s;
+      small += f.upper > 0.0 && f.area_to < 1e-6 * f.area_from ? 1 : 0;
+    }
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      EXPECT_EQ(both.open[row].lower, one.open[row].lower) << s;
+      EXPECT_EQ(both.open[row].upper, one.open[row].upper) << s;
+      EXPECT_EQ(both.back[row].upper, one.back[row].upper) << s;
+    }
+  }
+  EXPECT_GE(small, 5U);
+}
+
 void expect_equal_factors(const ViewFactor& a, const ViewFactor& b, const std::string& where) {
   const auto numbers = [](const ViewFactor& f) {
     return std::tuple(f.value, f.lower, f.upper, f.area_from, f.area_to, f.claim, f.way, f.accurate, f.cells,

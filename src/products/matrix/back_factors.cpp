@@ -7,6 +7,8 @@
 namespace exactff::matrix {
 namespace {
 
+constexpr double kOfRoundings = 1.0 + 0x1p-20;  // of a sum; more than they are unless it is far below 1e-9
+
 using kernel::above;
 using kernel::below;
 
@@ -52,6 +54,12 @@ std::vector<Selection> columns_of(const SceneWithBacks& made) {
 
 }  // namespace
 
+ViewFactorOptions as_one_direction(const ViewFactorOptions& options) {
+  ViewFactorOptions result = options;
+  result.both_directions = false;
+  return result;
+}
+
 ViewFactor factor_of(const view_factors::Pairs& pairs, std::size_t entry, double finer) {
   ViewFactor result;
   const auto take = [&](std::size_t of, const ViewFactor& f) {
@@ -65,7 +73,7 @@ BackFactors::BackFactors(const Scene& scene, std::span<const Selection> from, co
     : accuracy_(options.accuracy),
       made_(with_backs(scene)),
       columns_(columns_of(made_)),
-      pairs_(made_.scene, of_any_scene(from), columns_, options, view_factors::Columns::kBacks),
+      pairs_(made_.scene, of_any_scene(from), columns_, as_one_direction(options), view_factors::Columns::kBacks),
       area_(find_area()) {}
 
 double BackFactors::find_area() const {
@@ -82,31 +90,27 @@ double BackFactors::find_area() const {
 std::vector<BackFactors::Term> BackFactors::terms_of(std::size_t row) const {
   std::vector<Term> terms;
   std::size_t column = 0;
-  for (; column < made_.whole.size(); ++column) terms.push_back({column, false});
+  for (; column < made_.whole.size(); ++column) {
+    if (pairs_.may_see(row, column)) terms.push_back({column, false});
+  }
   for (; column < columns_.size(); column += 3) {
     if (pairs_.may_see(row, column)) terms.insert(terms.end(), {{column + 1, false}, {column + 2, true}});
   }
   return terms;
 }
 
-// No entry is the transpose of another: the patches of the rows are not among the columns.
+// No entry is the transpose of another: the patches of the rows are not among the columns. The terms have equal shares
+// of the accuracy, how wide they are or not: if that decided, a smaller accuracy could yield a wider sum.
 ViewFactor BackFactors::of_row(std::size_t row) const {
   const std::vector<Term> terms = terms_of(row);
-  std::size_t seen = 0;
-  const auto sum_of = [&](double finer) {
-    ViewFactor sum;
-    seen = 0;
-    for (const auto& [column, is_subtracted] : terms) {
-      const ViewFactor f = factor_of(pairs_, row * columns_.size() + column, finer);
-      seen += f.upper > 0.0 ? 1 : 0;
-      is_subtracted ? subtract(sum, f) : add(sum, f);
-    }
-    clamp(sum);
-    sum.accurate = sum.upper - sum.lower <= accuracy_;
-    return sum;
-  };
-  ViewFactor sum = sum_of(1.0);
-  if (!sum.accurate && seen > 1) sum = sum_of(static_cast<double>(seen));
+  const double finer = terms.size() > 1 ? kOfRoundings * static_cast<double>(terms.size()) : 1.0;
+  ViewFactor sum;
+  for (const auto& [column, is_subtracted] : terms) {
+    const ViewFactor f = factor_of(pairs_, row * columns_.size() + column, finer);
+    is_subtracted ? subtract(sum, f) : add(sum, f);
+  }
+  clamp(sum);
+  sum.accurate = sum.upper - sum.lower <= accuracy_;
   sum.area_to = area_;
   return sum;
 }

@@ -33,6 +33,9 @@ class BackFactors {
   double area_;
 };
 
+// For factors to what is no patch: the other direction, which nobody asks for, may give this one.
+[[nodiscard]] ViewFactorOptions as_one_direction(const ViewFactorOptions& options);
+
 // Also where rows are equal, and so one pair gives several entries. `finer`: see Pairs::compute.
 [[nodiscard]] ViewFactor factor_of(const view_factors::Pairs& pairs, std::size_t entry, double finer = 1.0);
 

@@ -71,15 +71,15 @@ OpenFactors::OpenFactors(const Scene& scene, std::span<const Selection> from, co
                          const view_factors::Pairs& pairs)
     : scene_(scene),
       from_(from.begin(), from.end()),
-      options_(options),
+      options_(as_one_direction(options)),
       pairs_(pairs),
       made_(with_sky(scene)),
-      to_sky_(made_.scene, of_any_scene(from), std::span(&made_.sky, 1), options,
+      to_sky_(made_.scene, of_any_scene(from), std::span(&made_.sky, 1), options_,
               view_factors::Columns::kSurroundings) {
   std::vector<Selection> windows;
   for (const SceneWithSky::Window& window : made_.windows) windows.push_back(window.patch);
   if (windows.empty()) return;
-  to_windows_.emplace(made_.scene, of_any_scene(from), windows, options, view_factors::Columns::kWindows);
+  to_windows_.emplace(made_.scene, of_any_scene(from), windows, options_, view_factors::Columns::kWindows);
 }
 
 OpenFactors::~OpenFactors() = default;
@@ -103,6 +103,8 @@ ViewFactor OpenFactors::of_row(std::size_t row) const {
   if (may_be_rest(row) && sides().unhidden(row) < kLittle) {
     const ViewFactor rest = rest_of(sides().of_row(row), pairs_.exposed_share(row));
     if (rest.accurate) return rest;
+    const ViewFactor to_sky = factor_of(to_sky_, row);
+    return to_sky.upper - to_sky.lower < rest.upper - rest.lower ? to_sky : rest;
   }
   return factor_of(to_sky_, row);
 }

@@ -4,7 +4,7 @@
 // - Within a surface with a convex hole and nothing beyond: the factor to the hole (SceneWithSky).
 // - If little is there to be seen: the rest that the faces leave of 1, from either side. The row's faces must be
 //   planar, since the pieces of others see through each other.
-// - Otherwise, or if the rest is not accurate: the factor to the sky.
+// - Otherwise, or if the rest is not accurate: the factor to the sky or the rest, the one that is narrower.
 #pragma once
 
 #include <cstddef>

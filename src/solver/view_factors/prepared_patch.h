@@ -26,6 +26,7 @@ struct PreparedPatch {
   double unit_area = 0.0;      // the same in squares of the unit of Point::at
   kernel::Disc enclosed_area;  // the same
   bool planar = true;          // all of its faces
+  bool opaque = true;          // the same: a point sees at most 1 of it
   Columns what;                // of columns; else kPatches
   SeenParts::OfPatch seen;
 
@@ -38,6 +39,11 @@ struct PreparedPatch {
 // The area that errors of an integral over the row's patch are divided by: of both directions, if both may be asked
 // for.
 [[nodiscard]] double counted_area(const PreparedPatch& from, const PreparedPatch& to);
+
+// Whether A_i F_ij = A_j F_ji holds.
+[[nodiscard]] bool are_reciprocal(const PreparedPatch& i, const PreparedPatch& j);
+// F_ij is at most this: 1 and, where F_ji is at most 1, A_j / A_i.
+[[nodiscard]] double largest_factor(const PreparedPatch& i, const PreparedPatch& j);
 
 // Whether a closed surface is proved to hide one part of either patch from the other, if the column asks for that.
 [[nodiscard]] bool are_separated(const SeenParts& seen, const PreparedPatch& row, std::size_t i,

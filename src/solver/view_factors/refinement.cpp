@@ -20,6 +20,8 @@ constexpr double kShareOfQuadrature = 0.0625;              // the same, of a cel
 constexpr double kShareOfCell = 0x1p-12;                   // the same, of a certified cell as large as the patch
 constexpr double kCoarse = 0x1p-7;                         // of the smaller area: the error of a cell of step 1
 constexpr double kShareOfUnknown = 0x1p-24;                // of all errors: a smaller one matters to no point
+constexpr double kShareOfTrifle = 0x1p-7;                  // of the error that is allowed, for all of the budget
+constexpr double kMostStuck = 2.0;                         // of the error that waits, in a stage
 constexpr double kAtRoundings = 0x1p-40;                   // of the area: sums of many cells have errors that large
 constexpr std::size_t kSharesOfARound = 64;                // one of so many is improved before the error is summed
 constexpr std::size_t kMostPoints = std::size_t{1} << 20;  // of all pairs of parts: some 200 MB
@@ -33,7 +35,7 @@ Refinement::Refinement(const ExactScene& scene, const SeenParts& seen, const Pre
       options_(options),
       pause_(pauses() ? kFirstPause : kNoPause),
       smaller_area_(counted_area(from, to)),
-      least_error_(0.5 * options.accuracy * smaller_area_ / (4.0 * static_cast<double>(options.budget))),
+      least_error_(0.5 * options.accuracy * smaller_area_ * kShareOfTrifle / static_cast<double>(options.budget)),
       narrowest_(widened(0.5 * from.enclosed_area, 0.5 * magnitude(from.enclosed_area))) {
   look_at_pairs(scene, seen, memory);
   narrow();
@@ -116,10 +118,10 @@ bool Refinement::go_on() {
   return true;
 }
 
-// False if the accuracy that is asked for is none of a later stage. With pauses, it must not decide what is done next.
+bool Refinement::has_next_stage() const { return accuracy_of_stage() >= kLeastAccuracy; }
+
 bool Refinement::start_next_stage() {
-  const double least = pauses() ? kLeastAccuracy : options_.accuracy;
-  if (gave_up_ || accuracy_of_stage() < least || !may_work()) return false;
+  if (gave_up_ || is_spent_ || !has_next_stage() || !may_work()) return false;
   ++stage_;
   for (const std::unique_ptr<Pair>& pair : pairs_) {
     if (pair != nullptr) pair->set_limits(limits());
@@ -148,9 +150,11 @@ void Refinement::order_waiting() {
 // A part of the shares, so that sums over all of them cost little. False if nothing can or need be done in this stage.
 bool Refinement::improve_some() {
   const std::size_t most = 1 + (waiting_.size() + settled_.size()) / kSharesOfARound;
+  const auto is_stuck = [&] { return has_next_stage() && errors_.stuck > kMostStuck * errors_.waiting; };
   std::size_t improved = 0;
-  while (improved < most && !waiting_.empty() && may_work() && running_error_ > target_of_stage() &&
-         waiting_.front().urgency >= least_urgency()) {
+  while (improved < most && !waiting_.empty() && may_work() && errors_.sum() > target_of_stage() && !is_stuck()) {
+    is_spent_ = waiting_.front().urgency < least_urgency();
+    if (is_spent_) break;
     improve_worst();
     ++improved;
   }
@@ -161,7 +165,7 @@ void Refinement::improve_worst() {
   std::ranges::pop_heap(waiting_, is_less_urgent);
   Waiting worst = std::move(waiting_.back());
   waiting_.pop_back();
-  running_error_ -= worst.share.error;
+  errors_.waiting -= worst.share.error;
   const Pair::Budget left = budget_left();
   work_on(worst.pair, [&](Pair& pair) { return pair.improve(std::move(worst.share), left); });
 }
@@ -178,12 +182,13 @@ void Refinement::work_on(std::size_t id, const Call& call) {
   effort_ += pair.effort() - effort;
 }
 
-// No more than 4 * budget shares are ever made, so the worst of them has an error of at least least_error_ while they
-// exceed what is wanted: of others, only the numbers are needed.
+// No more than 4 * budget shares are ever made. So if the most urgent one has less than the least error, then all that
+// wait have little of the error that is allowed, and so have those that are stuck (improve_some): improving them would
+// not make the integral accurate. Only their numbers are needed.
 void Refinement::add(Share share, std::size_t pair) {
   ++made_;
-  running_error_ += share.error;
   const bool waits = share.next == Share::Next::kCut || share.next == Share::Next::kMorePoints;
+  (waits ? errors_.waiting : settled_errors(share)) += share.error;
   std::vector<Waiting>& shares = waits ? waiting_ : settled_;
   shares.push_back({std::move(share), pair, made_});
   Waiting& added = shares.back();
@@ -195,11 +200,11 @@ void Refinement::add(Share share, std::size_t pair) {
 // Sums up anew, without the roundings of updates.
 void Refinement::narrow() {
   kernel::Disc sum;
-  running_error_ = 0.0;
+  errors_ = {};
   for (const std::vector<Waiting>* shares : {&waiting_, &settled_}) {
     for (const Waiting& w : *shares) {
       sum = sum + kernel::Disc{w.share.integral, w.share.error};
-      running_error_ += w.share.error;
+      (shares == &waiting_ ? errors_.waiting : settled_errors(w.share)) += w.share.error;
     }
   }
   if (!(sum.radius < narrowest_.radius)) return;
@@ -229,7 +234,7 @@ Refinement::Apart Refinement::apart() const {
   Apart result;
   for (const std::vector<Waiting>* shares : {&waiting_, &settled_}) {
     for (const Waiting& w : *shares) {
-      const bool matters = w.share.error > kShareOfUnknown * running_error_;
+      const bool matters = w.share.error > kShareOfUnknown * errors_.sum();
       if (matters && suits_points(w) && area(w.share.cell) > 0.0) {
         unknown.push_back(&w);
       } else {

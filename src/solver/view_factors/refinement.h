@@ -13,8 +13,9 @@
 //
 // What is done next depends on the scene and the two patches alone, never on the accuracy that is wanted: this only
 // decides when it is enough. Limits that must be small if the accuracy is small belong to stages, which follow one
-// another. So a smaller accuracy goes on where a larger one stopped, and since the narrowest interval so far is the
-// result, it never yields a wider one.
+// another. Shares that can never matter for the accuracy lose what they could be improved by, to save memory; if one
+// of them is next, the work ends. So a smaller accuracy goes on where a larger one stopped, and since the narrowest
+// interval so far is the result, it never yields a wider one.
 //
 // Where points may be cheaper, the refinement pauses, also within step 1: whenever it has done twice as much
 // (view_factor.cpp).
@@ -79,6 +80,14 @@ class Refinement {
     return a.urgency != b.urgency ? a.urgency < b.urgency : a.number > b.number;
   }
 
+  // Sums over all shares.
+  struct Errors {
+    double waiting = 0.0;  // of shares in the heap
+    double stuck = 0.0;    // of those that a later stage may improve
+    double lasting = 0.0;  // of the others
+    [[nodiscard]] double sum() const { return waiting + stuck + lasting; }
+  };
+
   void look_at_pairs(const ExactScene& scene, const SeenParts& seen, PairMemory& memory);
   [[nodiscard]] bool add_pair(std::unique_ptr<Pair> pair);
   void give_up();
@@ -88,6 +97,7 @@ class Refinement {
   [[nodiscard]] double accuracy_of_stage() const;
   [[nodiscard]] double target_of_stage() const;
   [[nodiscard]] Pair::Limits limits() const;
+  [[nodiscard]] bool has_next_stage() const;
   [[nodiscard]] bool start_next_stage();
   [[nodiscard]] bool improve_some();
   void improve_worst();
@@ -96,9 +106,12 @@ class Refinement {
   template <class Call>
   void work_on(std::size_t id, const Call& call);
   void add(Share share, std::size_t pair);
+  [[nodiscard]] double& settled_errors(const Share& settled) {
+    return settled.next == Share::Next::kNextStage ? errors_.stuck : errors_.lasting;
+  }
   [[nodiscard]] bool suits_points(const Waiting& w) const;
   [[nodiscard]] double urgency(const Waiting& w) const;
-  // Shares that are less urgent are never improved. Urgencies only fall.
+  // Shares that are less urgent are never improved: all of them together matter little. Urgencies only fall.
   [[nodiscard]] double least_urgency() const { return (pauses() ? kOfPoints : 1.0) * least_error_; }
   void order_waiting();
 
@@ -115,12 +128,13 @@ class Refinement {
   std::vector<Waiting> settled_;              // cannot be improved in this stage
   std::size_t points_ = 0;                    // of all pairs of parts
   std::size_t stage_ = 0;
-  double running_error_ = 0.0;
+  Errors errors_;
   std::size_t made_ = 0;  // shares
   std::size_t cells_ = 0, cost_ = 0;
   std::uint64_t effort_ = 0;
   bool has_paused_ = false;
-  bool gave_up_ = false;  // nothing but 0 <= F <= 1 is known
+  bool gave_up_ = false;   // nothing but 0 <= F <= 1 is known
+  bool is_spent_ = false;  // what may be improved is too little to matter
   kernel::Disc narrowest_;
   std::size_t cost_of_narrowest_ = 0;  // when it was found
 };

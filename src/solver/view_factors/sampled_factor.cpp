@@ -91,7 +91,12 @@ SampledMean::SampledMean(const ExactScene& scene, const SeenParts& seen, const P
       to_(to),
       most_(std::max(most, kPointsOfFirstLook)),
       ratio_(ratio),
-      bounds_(scene, seen, from, to) {
+      largest_(largest_factor(from, to)),
+      bounds_(scene, seen, from, to),
+      known_{0.0, largest_},
+      value_(0.5 * largest_),
+      lower_(0.0),
+      upper_(largest_) {
   const Strata strata = strata_of(from.parts, kFewestStrata);
   for (const Stratum& stratum : strata.strata) {
     const Tile& tile = strata.tiles[stratum.begin];
@@ -143,10 +148,9 @@ void SampledMean::take_look() {
   const double lower = std::max(known_.lower, value - error), upper = std::min(known_.upper, value + error);
   if (lower <= upper) known_ = {lower, upper};
   const double strata = static_cast<double>(std::min(looking_->looks.strata(), most_ / kDraws));
-  const double width = std::max(known_.upper - known_.lower, least_width(strata));
-  const double largest = std::max(1.0 / ratio_, known_.upper);
-  lower_ = std::clamp(0.5 * (known_.lower + known_.upper - width), 0.0, std::max(0.0, largest - width));
-  upper_ = std::clamp(lower_ + width, known_.upper, 1.0);
+  const double width = std::min(std::max(known_.upper - known_.lower, least_width(strata)), largest_);
+  lower_ = std::clamp(0.5 * (known_.lower + known_.upper - width), 0.0, largest_ - width);
+  upper_ = std::clamp(lower_ + width, known_.upper, largest_);
   lower_ = std::min(lower_, known_.lower);
   value_ = std::clamp(value, lower_, upper_);
 }

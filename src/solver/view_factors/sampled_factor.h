@@ -55,7 +55,7 @@ class SampledMean {
     Span span;
   };
   struct Interval {
-    double lower = 0.0, upper = 1.0;
+    double lower, upper;
   };
 
   [[nodiscard]] double width() const { return (upper_ - lower_) * ratio_; }
@@ -68,11 +68,12 @@ class SampledMean {
   const PreparedPatch& to_;
   std::size_t most_;
   double ratio_;
+  double largest_;  // that the mean can be
   PatchBounds bounds_;
   std::vector<Sample> samples_;
   std::unique_ptr<Looking> looking_;  // made when asked for
   Interval known_;
-  double value_ = 0.5, lower_ = 0.0, upper_ = 1.0;  // of the interval, widened
+  double value_, lower_, upper_;  // of the interval, widened
 };
 
 }  // namespace exactff::view_factors

@@ -42,11 +42,14 @@ constexpr double kMostTimes = 4.0;          // the cells' effort, for looks at t
 constexpr std::size_t kPointsOfBudget = 4;  // for a cell of the limit, which costs more than these
 constexpr std::uint64_t kAnyEffort = std::uint64_t{1} << 62;
 
-// Of a mean over the patch.
-void take_interval(const Disc& integral, const PreparedPatch& from, ViewFactor& result) {
-  const Disc f = integral / from.enclosed_area;
-  result.lower = is_finite(f) ? std::clamp(lower_end(f), 0.0, 1.0) : 0.0;
-  result.upper = is_finite(f) ? std::clamp(upper_end(f), 0.0, 1.0) : 1.0;
+// Of a factor that is at most `most`, within it.
+struct Interval {
+  double lower, upper;
+};
+
+Interval interval_of(const Disc& f, double most) {
+  if (!is_finite(f)) return {0.0, most};
+  return {std::clamp(lower_end(f), 0.0, most), std::clamp(upper_end(f), 0.0, most)};
 }
 
 double width_of(const ViewFactor& f) { return f.upper - f.lower; }
@@ -61,7 +64,8 @@ bool is_within(double accuracy, const ViewFactor& f, const PreparedPatch& from, 
 }
 
 ViewFactor unknown_factor(const PreparedPatch& from, const PreparedPatch& to) {
-  return {.value = 0.5, .upper = 1.0, .area_from = from.area, .area_to = to.area, .claim = Claim::kEstimated};
+  const double most = largest_factor(from, to);
+  return {.value = 0.5 * most, .upper = most, .area_from = from.area, .area_to = to.area, .claim = Claim::kEstimated};
 }
 
 // Of two patches, whether points on the first one tell more of their factor for the same effort. The error of a mean
@@ -97,7 +101,7 @@ class PointSearch {
   [[nodiscard]] ViewFactor factor() const {
     ViewFactor f = turned_ ? unknown_factor(to_, from_) : unknown_factor(from_, to_);
     f.way = Way::kPoints;
-    f.value = std::clamp(mean_.value(), 0.0, 1.0);
+    f.value = mean_.value();
     f.lower = mean_.lower();
     f.upper = mean_.upper();
     return turned_ ? transpose(f, to_, from_) : f;
@@ -111,9 +115,9 @@ class PointSearch {
 };
 
 // By cells and, where these cost more, by points. Each goes on in its own way whatever the accuracy is, and the
-// narrowest interval is the result. A smaller accuracy never yields a wider one: with it, cells and looks go on where a
-// larger one stops, but for looks that cannot reach it; and if an entry that is made accurate by cells has left them
-// out, none of them is narrower (SampledMean::may_reach).
+// narrowest interval is the result, as it is within what the factor can be. A smaller accuracy never yields a wider
+// one: with it, cells and looks go on where a larger one stops, but for looks that cannot reach it; and if an entry
+// that is made accurate by cells has left them out, none of them is narrower (SampledMean::may_reach).
 class Search {
  public:
   Search(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from, const PreparedPatch& to,
@@ -125,6 +129,7 @@ class Search {
         options_(options),
         cells_(scene, seen, from, to, options, memory),
         points_at_cells_(scene, from, to, kPointsOfBudget * options.budget),
+        most_(largest_factor(from, to)),
         by_cells_(unknown_factor(from, to)),
         at_cells_(by_cells_) {}
 
@@ -139,9 +144,16 @@ class Search {
   void refine() {
     if (cells_.is_zero()) return;
     cells_.refine([&](const Disc& integral) {
-      take_interval(integral, from_, by_cells_);
+      const Interval found = interval_of(integral);
+      if (found.upper - found.lower < width_of(by_cells_)) {
+        by_cells_.lower = found.lower;
+        by_cells_.upper = found.upper;
+      }
       return is_accurate(by_cells_);
     });
+  }
+  [[nodiscard]] Interval interval_of(const Disc& integral) const {
+    return view_factors::interval_of(integral / from_.enclosed_area, most_);
   }
   [[nodiscard]] double counted(const ViewFactor& f) const { return counted_width(f, from_, to_); }
   [[nodiscard]] bool is_accurate(const ViewFactor& f) const { return is_within(options_.accuracy, f, from_, to_); }
@@ -160,8 +172,7 @@ class Search {
   // What all looks have in common.
   void look_at_cells(bool cells_left) {
     const auto is_enough = [&](const Disc& integral) {
-      ViewFactor found;
-      take_interval(integral, from_, found);
+      const Interval found = interval_of(integral);
       const double lower = std::max(found.lower, at_cells_.lower), upper = std::min(found.upper, at_cells_.upper);
       if (lower <= upper) {
         at_cells_.lower = lower;
@@ -219,6 +230,7 @@ class Search {
   const ViewFactorOptions& options_;
   Refinement cells_;
   SampledCells points_at_cells_;
+  double most_;                        // that the factor can be
   std::optional<PointSearch> points_;  // from the first pause on
   ViewFactor by_cells_, at_cells_;     // their intervals
   double last_width_ = 1.0;            // of the cells at the pause before
@@ -228,7 +240,7 @@ class Search {
 }  // namespace
 
 bool is_symmetric(const PreparedPatch& i, const PreparedPatch& j, const ViewFactorOptions& options) {
-  return i.planar && j.planar && !j.surrounds() && !options.both_directions;
+  return are_reciprocal(i, j) && !options.both_directions;
 }
 
 ViewFactor factor_between(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from,
@@ -241,13 +253,9 @@ ViewFactor transpose(const ViewFactor& f, const PreparedPatch& from, const Prepa
   std::swap(result.area_from, result.area_to);
   if (f.claim == Claim::kZero) return result;
   const Disc ratio = from.enclosed_area / to.enclosed_area;
-  if (!is_finite(ratio)) {
-    result.lower = 0.0;
-    result.upper = 1.0;
-  } else {
-    result.lower = std::clamp(lower_end(f.lower * ratio), 0.0, 1.0);
-    result.upper = std::clamp(upper_end(f.upper * ratio), 0.0, 1.0);
-  }
+  const double most = largest_factor(to, from);
+  result.lower = interval_of(f.lower * ratio, most).lower;
+  result.upper = interval_of(f.upper * ratio, most).upper;
   result.value = std::clamp(f.value * (from.unit_area / to.unit_area), result.lower, result.upper);
   return result;
 }

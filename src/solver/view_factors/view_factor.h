@@ -8,7 +8,7 @@ namespace exactff::view_factors {
 
 class PairMemory;
 
-// Whether A_i F_ij = A_j F_ji holds and may be used.
+// Whether A_i F_ij = A_j F_ji may give the one from the other.
 [[nodiscard]] bool is_symmetric(const PreparedPatch& i, const PreparedPatch& j, const ViewFactorOptions& options);
 
 // F_ij, `from` being patch i and `to` patch j.
