@@ -20,10 +20,6 @@ bool is_partly_buried(const Scene& scene, const Selection& patch) {
   });
 }
 
-}  // namespace
-
-namespace {
-
 bool is_opaque(const Scene& scene, const Selection& patch) {
   return std::ranges::none_of(scene.faces_of(patch), [&](FaceId face) { return scene.face(face).transparent; });
 }
