@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -183,6 +184,9 @@ class Scene {
   // lower-case hexadecimal digits.
   [[nodiscard]] std::string hash() const;
 
+  // The files that it was read from: its own and its MTL files. None for a scene that was generated or built.
+  [[nodiscard]] std::span<const std::filesystem::path> files() const;
+
   // Number of edges that an odd number of faces use, matched by vertex positions. A closed solid has none.
   [[nodiscard]] std::size_t open_edge_count() const;
 
@@ -226,6 +230,8 @@ class SceneBuilder {
   // The normal that the file states for the face added last, of any length (Face::file_normals).
   void state_normal(const Vec3& normal);
   void warn(Problem warning);
+  // The scene was read from this file, too (Scene::files).
+  void read_from(std::filesystem::path file);
 
   // Checks every face, triangulates faces that are not planar or not convex, and freezes the scene. Throws one
   // InputError with all problems found. The builder is empty afterwards.

@@ -51,6 +51,15 @@ def test_a_truth_file_has_the_bytes_of_the_program(tmp_path):
     assert again.resumed == 30
     with pytest.raises(exactff.InputError, match="choose"):
         exactff.truth(ROOM, GRID, tmp_path / "python.csv", existing="overwrite")
+    (tmp_path / "lights.mtl").write_text("newmtl lamp\nKe 1 1 1\n")
+    (tmp_path / "s.obj").write_text("mtllib lights.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\ng floor\nusemtl lamp\nf 1 2 3\n")
+    scene = exactff.Scene.read(tmp_path / "s.obj")
+    for name in ("s.obj", "lights.mtl"):
+        before = (tmp_path / name).read_bytes()
+        with pytest.raises(exactff.InputError, match=f"{name}: is read"):
+            exactff.truth(scene.with_flipped("floor"), scene.receivers("floor", grid=2), tmp_path / name, "floor",
+                          existing="replace")
+        assert (tmp_path / name).read_bytes() == before
 
 
 def test_a_truth_file_of_arrays(tmp_path):
@@ -113,13 +122,16 @@ def test_a_baseline_is_never_loosened(tmp_path):
     with pytest.raises(exactff.InputError, match="does not exist"):
         check(0.1, baseline=file)
     assert check(0.1, write_baseline=file)
-    first = file.read_text()
-    worse = check(0.2, baseline=file, write_baseline=file, junit=junit)
-    assert not worse and file.read_text() == first and not worse.improvements
+    first, tighter = file.read_text(), tmp_path / "tighter.json"
+    for outputs in ({"write_baseline": file}, {"junit": file}, {"junit": tighter, "write_baseline": tighter}):
+        with pytest.raises(exactff.InputError, match="is read|two outputs"):
+            check(0.05, baseline=file, **outputs)
+    worse = check(0.2, baseline=file, write_baseline=tighter, junit=junit)
+    assert not worse and file.read_text() == first and not tighter.exists() and not worse.improvements
     assert "baseline max-abs" in junit.read_text() and "r2c2" in junit.read_text()
     assert check(0.11, baseline=file, slack=0.2)
-    better = check(0.05, baseline=file, write_baseline=file)
-    assert better and better.improvements[0][:2] == ("baseline max-abs", "") and file.read_text() != first
+    better = check(0.05, baseline=file, write_baseline=tighter)
+    assert better and better.improvements[0][:2] == ("baseline max-abs", "") and tighter.read_text() != first
     assert not check(0.1, baseline=file) and not check(np.nan, write_baseline=tmp_path / "none.json")
     assert not (tmp_path / "none.json").exists()
 

@@ -30,6 +30,7 @@
 #include "exactff/render.h"
 #include "exr/other_image.h"
 #include "files/file.h"
+#include "flags/file_options.h"
 #include "text/csv_lines.h"
 #include "text/escape.h"
 #include "text/number_text.h"
@@ -51,7 +52,7 @@ constexpr const char* kCheckFooter =
     "A baseline file records errors, which become the limits of later runs. An error counts as worse if it is larger\n"
     "by more than --slack and by more than 4 units in the last place. A program that draws new random numbers in\n"
     "every run needs a slack such as 0.2, or a fixed seed.\n"
-    "With --baseline, --write-baseline writes the file only if nothing got worse.\n"
+    "With --baseline, --write-baseline writes its file, another one, only if nothing got worse.\n"
     "Tables may have commas, or semicolons as spreadsheets write them, then also with decimal commas.\n"
     "Two images, .exr or .npy arrays (height, width, 3), are compared pixel by pixel, in each channel: pixels are\n"
     "receivers, channels are sources. A pixel of the truth that is not a finite number does not count. --error-image\n"
@@ -382,8 +383,11 @@ void add_criteria(CLI::App& command, CheckArguments& args) {
       ->capture_default_str()
       ->type_name("NUMBER");
   command.add_option("--baseline", args.baseline, "Fail if errors are worse than those recorded in this file")
-      ->type_name("FILE");
-  command.add_option("--write-baseline", args.write_baseline, "Record the errors of this run")->type_name("FILE");
+      ->type_name("FILE")
+      ->check(flags::is_read());
+  command.add_option("--write-baseline", args.write_baseline, "Record the errors of this run")
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kJson));
   command.add_option("--slack", args.slack, "Share by which errors may exceed the baseline: 0.1 allows 10 % more")
       ->capture_default_str()
       ->type_name("SHARE");
@@ -393,13 +397,20 @@ void add_outputs(CLI::App& command, CheckArguments& args) {
   command
       .add_option("--error-image", args.error_image,
                   "Of two images: write candidate minus truth as .exr, or in colours as .png")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kImage));
   command.add_option("--worst", args.worst, "Number of rows to list, worst first")
       ->capture_default_str()
       ->type_name("N");
-  command.add_option("--plot", args.plot, "Draw the histogram of the errors as SVG")->type_name("FILE");
-  command.add_option("--junit", args.junit, "Write the verdicts as JUnit XML")->type_name("FILE");
-  command.add_option("--json", args.json, "Write everything as JSON")->type_name("FILE");
+  command.add_option("--plot", args.plot, "Draw the histogram of the errors as SVG")
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kSvg));
+  command.add_option("--junit", args.junit, "Write the verdicts as JUnit XML")
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kXml));
+  command.add_option("--json", args.json, "Write everything as JSON")
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kJson));
   command.add_flag("--github", args.github, "Also print annotations for GitHub Actions");
 }
 
@@ -415,10 +426,12 @@ Command add_check(CLI::App& app) {
           "File written by `exactff truth` or `exactff matrix -o`, or exact.csv of `exactff compare`; or an image, "
           ".exr or .npy")
       ->required()
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(flags::is_read());
   command->add_option("CANDIDATE", args->candidate, "CSV file of the values to judge; or an image, or a matrix")
       ->required()
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(flags::is_read());
   add_matching(*command, *args);
   add_criteria(*command, *args);
   add_outputs(*command, *args);

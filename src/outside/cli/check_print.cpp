@@ -131,7 +131,8 @@ void print_end(const check::Report& report, bool improved, const std::string& ba
   }
   const bool suggests = failed == 0 && improved && !baseline_to_tighten.empty();
   if (suggests)
-    std::cout << "To record this improvement: --write-baseline " << text::printable(baseline_to_tighten) << '\n';
+    std::cout << "To record this improvement, without --baseline: --write-baseline "
+              << text::printable(baseline_to_tighten) << '\n';
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "exactff/study.h"
 #include "files/file.h"
 #include "flags/comparison.h"
+#include "flags/file_options.h"
 #include "flags/sources.h"
 #include "flags/study_file.h"
 #include "report/plan.h"
@@ -95,7 +96,7 @@ void check_outputs(const CompareArguments& args) {
     text::refuse("--vtk is given with a study file", "a VTK file shows the receivers of one scene",
                  "compare each scene by itself, or leave out --vtk");
   }
-  check_further_files(args.further, args.folder, args.force || args.resume);
+  check_further_files(args.further, args.force || args.resume);
 }
 
 // A finished report has tables only, and the files of --vtk were made before it.
@@ -192,9 +193,10 @@ void print_warnings_of(const report::PlannedScene& planned, bool several) {
   if (!note.empty()) std::cerr << "note: " << text::printable((several ? planned.title + ": " : "") + note) << '\n';
 }
 
-int run(const CompareArguments& args) {
+int run(const CLI::App& command, const CompareArguments& args) {
   check_outputs(args);
   const report::Plan plan = with_progress([&] { return plan_of(args); });
+  flags::require_not_written(command, plan.files_read);
   for (const report::PlannedScene& scene : plan.scenes) print_warnings_of(scene, plan.scenes.size() > 1);
   if (is_done(args, plan)) {
     require_vtk_of_finished(args);
@@ -261,14 +263,15 @@ Command add_compare(CLI::App& app) {
       ->type_name("N");
   command->add_option("-o,--output", args->folder, "Folder for the report and the tables")
       ->required()
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->check(flags::is_written_folder());
   args->further.add_vtk_to(*command);
   CLI::Option* resume = command->add_flag("--resume", args->resume, "Continue an interrupted run, if there is one");
   command
       ->add_flag("--force", args->force, "Start again: discard the work of an interrupted run, replace a finished DIR")
       ->excludes(resume);
   command->footer(kCompareFooter);
-  return {command, [args] { return run(*args); }};
+  return {command, [command, args] { return run(*command, *args); }};
 }
 
 }  // namespace exactff::cli

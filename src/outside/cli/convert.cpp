@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/output.h"
 #include "exactff/scene_files.h"
+#include "flags/file_options.h"
 #include "flags/scene.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -70,7 +71,9 @@ Command add_convert(CLI::App& app) {
   CLI::App* command = app.add_subcommand("convert", "Write a scene in another format");
   args->scene.add_to(*command);
   args->scene.add_divide_to(*command);
-  command->add_option("OUT", args->out, "File to write: .obj, .ply, .stl, .off or .vs3")->required();
+  command->add_option("OUT", args->out, "File to write: .obj, .ply, .stl, .off or .vs3")
+      ->required()
+      ->check(flags::is_written(flags::Format::kScene, flags::Beside::kMaterials));
   command->add_flag("--triangulate", args->triangulate, "Cut all faces into triangles, at their own vertices");
   command->add_option("--encoding", args->encoding, "Form of PLY (otherwise binary) and STL (otherwise text)")
       ->check(CLI::IsMember({"text", "binary"}));

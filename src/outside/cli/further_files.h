@@ -2,9 +2,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <string>
 #include <vector>
+
+#include "files/apart.h"
 
 namespace exactff::cli {
 
@@ -21,17 +22,11 @@ struct FurtherFiles {
   [[nodiscard]] std::vector<std::string> flags() const;
 };
 
-struct OutputFile {
-  std::string flag;
-  std::filesystem::path file;
-};
-// As check_further_files, for files beside others (`before`) that are checked already.
-void check_output_files(const std::vector<OutputFile>& files, std::vector<OutputFile> before, bool may_replace);
-
-// Called before anything that takes time. Throws InputError unless each file can be written beside `result`, a file or
-// a folder: if a file is no regular file, exists already and may not be replaced, has no place to be written, is the
-// same as another one, or lies in the folder.
-void check_further_files(const FurtherFiles& files, const std::filesystem::path& result, bool may_replace);
+// Called before anything that takes time. Throws InputError unless each file can be written: if it is no regular file,
+// exists already and may not be replaced, or has no place to be written. That outputs are different files is known
+// already (flags/file_options.h). Files without a name are left out.
+void check_output_files(const std::vector<files::NamedFile>& files, bool may_replace);
+void check_further_files(const FurtherFiles& files, bool may_replace);
 
 // Prints where they are.
 void print_further_files(const FurtherFiles& files);

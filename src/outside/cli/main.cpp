@@ -1,7 +1,10 @@
-// The program: parse, call, print. Exit codes: 0 done, 1 a check failed, 2 bad input, 3 not certified, 4 internal.
+// The program: parse, call, print. Exit codes: 0 done, 1 a check failed, 2 bad input, 3 not as accurate or certified as
+// asked, 4 internal.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <iostream>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -15,7 +18,9 @@
 #include "cli/misused_flags.h"
 #include "cli/output.h"
 #include "cli/streams.h"
+#include "exactff/error.h"
 #include "exactff/version.h"
+#include "flags/file_options.h"
 #include "text/escape.h"
 
 namespace {
@@ -52,21 +57,38 @@ int end_of_parsing(const CLI::App& app, const CLI::ParseError& error) {
   return done ? 0 : exactff::cli::kBadInput;
 }
 
+// The exit code, if there is nothing to run.
+std::optional<int> parse(CLI::App& app, int argc, char** argv) {
+  const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (argc > 1 && *argv[1] != '-') exactff::cli::require_command(app, argv[1]);
+  exactff::cli::refuse_flags_without_values(app, words);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) exactff::cli::refuse_misused_flags(app, words);
+    return end_of_parsing(app, error);
+  }
+  for (const CLI::App* command : app.get_subcommands()) exactff::flags::require_outputs_apart(*command);
+  return std::nullopt;
+}
+
+// Under mpirun, every process finds the same mistake, and only rank 0 tells it.
+std::optional<int> parse_and_tell_once(CLI::App& app, int argc, char** argv) {
+  try {
+    return parse(app, argc, argv);
+  } catch (const exactff::InputError&) {
+    if (exactff::cli::launched_rank() > 0) return 0;
+    throw;
+  }
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app(kDescription, "exactff");
   app.formatter(exactff::cli::help_formatter());
   app.set_version_flag("--version", std::string("exactff ") + exactff::kVersion);
   app.require_subcommand(0, 1);
   const std::vector<exactff::cli::Command> commands = exactff::cli::add_commands(app);
-  if (argc > 1 && *argv[1] != '-') exactff::cli::require_command(app, argv[1]);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const std::vector<std::string> words(argv + 1, argv + argc);
-    const bool tells = error.get_exit_code() != 0 && exactff::cli::launched_rank() == 0;
-    if (tells) exactff::cli::refuse_misused_flags(app, words);
-    return end_of_parsing(app, error);
-  }
+  if (const std::optional<int> exit_code = parse_and_tell_once(app, argc, argv)) return *exit_code;
   for (const exactff::cli::Command& command : commands) {
     if (command.app->parsed()) return exactff::cli::unless_interrupted(command.run);
   }

@@ -21,6 +21,7 @@
 #include "cli/view_factor_words.h"
 #include "exactff/version.h"
 #include "flags/lists.h"
+#include "flags/file_options.h"
 #include "flags/scene.h"
 #include "matrix/row_facts.h"
 #include "matrix/row_on_faces.h"
@@ -202,17 +203,13 @@ void check_shard_and_resume(const MatrixArguments& args) {
 
 void check_outputs(const MatrixArguments& args) {
   check_shard_and_resume(args);
-  require_not_read(args.csv, {args.scene.path});
-  std::vector<OutputFile> before;
   if (args.keeps_work()) {
     jobs::require_free(args.csv, args.existing());
-    before = {{"-o", args.csv}, {"the journal of -o", jobs::journal_of(args.csv)}};
   } else if (!args.csv.empty()) {
     require_free_file(args.csv, args.force);
-    before = {{"-o", args.csv}};
   }
   check_output_files(
-      {{"--npz", args.npz}, {"--view3d", args.view3d}, {"--energyplus", args.energyplus}, {"--vtk", args.vtk}}, before,
+      {{"--npz", args.npz}, {"--view3d", args.view3d}, {"--energyplus", args.energyplus}, {"--vtk", args.vtk}},
       args.existing() != jobs::Existing::kRefuse);
 }
 
@@ -374,18 +371,26 @@ int run(const MatrixArguments& args) {
 }
 
 void add_outputs(CLI::App& command, MatrixArguments& args) {
-  command.add_option("-o,--output", args.csv, "Write a CSV file")->type_name("FILE");
-  command.add_option("--npz", args.npz, "Write the arrays of a sparse matrix for NumPy and SciPy")->type_name("FILE");
-  command.add_option("--view3d", args.view3d, "Write the matrix as View3D does, with six decimals")->type_name("FILE");
+  command.add_option("-o,--output", args.csv, "Write a CSV file")
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kCsv, flags::Beside::kJournal));
+  command.add_option("--npz", args.npz, "Write the arrays of a sparse matrix for NumPy and SciPy")
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kNpz));
+  command.add_option("--view3d", args.view3d, "Write the matrix as View3D does, with six decimals")
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kView3d));
   CLI::Option* energyplus =
       command.add_option("--energyplus", args.energyplus, "Write view factors for the input file of EnergyPlus")
-          ->type_name("FILE");
+          ->type_name("FILE")
+          ->check(flags::is_written(flags::Format::kEnergyPlus));
   command.add_option("--zone", args.zone, "Name of EnergyPlus' zone")
       ->type_name("TEXT")
       ->needs(energyplus)
       ->capture_default_str();
   command.add_option("--vtk", args.vtk, "Write the one row that --from names, on the scene, as NAME.vtp or NAME.vtu")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kVtk));
   command.add_option("--shard", args.shard, "Compute only part I of N, for exactff merge: 1/4 is the first of four")
       ->type_name("I/N");
   CLI::Option* resume = command.add_flag("--resume", args.resume, "Continue an interrupted run, if there is one");

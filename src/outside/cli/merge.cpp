@@ -13,6 +13,7 @@
 #include "exactff/truth.h"
 #include "text/escape.h"
 #include "text/phrases.h"
+#include "flags/file_options.h"
 #include "text/refuse.h"
 
 namespace exactff::cli {
@@ -49,7 +50,7 @@ int merge_matrix(const MergeArguments& args, const jobs::RowHooks& hooks, const 
 }
 
 int run(const MergeArguments& args) {
-  check_further_files(args.further, args.file, args.force);
+  check_further_files(args.further, args.force);
   std::string given_up = "exactff: interrupted; nothing was written\n";
   const InterruptWatch watch(given_up);
   ProgressBar bar;
@@ -81,9 +82,13 @@ Command add_merge(CLI::App& app) {
   CLI::App* command = app.add_subcommand("merge", "Join the shards of a truth file or of a matrix");
   command->add_option("SHARD", args->shards, "Files written by exactff truth --shard or exactff matrix --shard")
       ->required()
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(flags::is_read());
   command->add_flag("--force", args->force, "Replace an existing file");
-  command->add_option("-o,--output", args->file, "CSV file to write")->required()->type_name("FILE");
+  command->add_option("-o,--output", args->file, "CSV file to write")
+      ->required()
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kCsv));
   args->further.add_numpy_to(*command);
   command->footer(kMergeFooter);
   return {command, [args] { return run(*args); }};

@@ -128,13 +128,57 @@ const OptionRow* option_named(const CommandTable& command, const std::string& na
   return found == command.options.end() ? nullptr : &*found;
 }
 
+// A value that begins like a flag can be given as --flag=VALUE.
+bool is_other_flag(const CommandTable& command, const std::string& word) {
+  return is_flag(word) && (word.starts_with("--") || option_named(command, std::string(name_in(word))) != nullptr);
+}
+
+std::string kind_of_value(const OptionRow& option) {
+  if (option.value.starts_with("NAME")) return "a name";
+  if (option.value == "FILE" || option.value == "OUT") return "a file";
+  return option.value == "DIR" ? "a folder" : "a value";
+}
+
+Problem without_value(const CommandTable& command, const OptionRow& option, const std::string& name,
+                      const std::string& next) {
+  const bool may_be_meant = !next.empty() && option_named(command, std::string(name_in(next))) == nullptr;
+  return {.what = name + " needs " + kind_of_value(option),
+          .why = next.empty() ? "nothing follows it" : next + " follows, which begins like a flag",
+          .suggestion = "write " + name + ' ' + option.value +
+                        (may_be_meant ? ", or " + name + '=' + next + " if that is meant" : "")};
+}
+
+// Nothing for words that begin with no command of the table.
+std::optional<CommandTable> command_of(const CLI::App& app, std::span<const std::string> words) {
+  if (words.empty()) return std::nullopt;
+  ProgramTable program = program_table(app);
+  const auto command = std::ranges::find(program.commands, words.front(), &CommandTable::name);
+  return command == program.commands.end() ? std::nullopt : std::optional(std::move(*command));
+}
+
 }  // namespace
 
+void refuse_flags_without_values(const CLI::App& app, std::span<const std::string> words) {
+  const std::optional<CommandTable> command = command_of(app, words);
+  if (!command) return;
+  std::vector<Problem> problems;
+  for (std::size_t i = 1; i < words.size() && words[i] != "--"; ++i) {
+    const std::string name = is_flag(words[i]) ? std::string(name_in(words[i])) : "";
+    const OptionRow* option = name == words[i] ? option_named(*command, name) : nullptr;
+    if (option == nullptr || option->value.empty() || takes_a_vector(*option)) continue;
+    const std::string next = i + 1 < words.size() ? words[i + 1] : "";
+    if (i + 1 < words.size() && !is_other_flag(*command, next)) {
+      ++i;
+    } else {
+      problems.push_back(without_value(*command, *option, name, next));
+    }
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
 void refuse_misused_flags(const CLI::App& app, std::span<const std::string> words) {
-  if (words.empty()) return;
-  const ProgramTable program = program_table(app);
-  const auto command = std::ranges::find(program.commands, words.front(), &CommandTable::name);
-  if (command == program.commands.end()) return;
+  const std::optional<CommandTable> command = command_of(app, words);
+  if (!command) return;
   std::vector<Problem> problems;
   for (const GivenFlag& flag : given_flags(words.subspan(1))) {
     const OptionRow* option = option_named(*command, flag.name);

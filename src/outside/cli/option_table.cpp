@@ -102,8 +102,10 @@ CommandTable command_table(const CLI::App& app) {
 }  // namespace
 
 OptionRow option_row(const CLI::Option& option) {
-  const TypeText type = parse_type(option.get_type_name());
+  const std::string full = option.get_type_name();
+  const TypeText type = parse_type(full.substr(0, flags::begin_of_mark(full)));
   OptionRow row;
+  row.file = flags::mark_of(option);
   for (const std::string& name : option.get_snames()) row.names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) row.names.push_back("--" + name);
   row.description = description_of(option, type);

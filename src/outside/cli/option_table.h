@@ -3,8 +3,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "flags/file_options.h"
 
 namespace exactff::cli {
 
@@ -27,7 +30,8 @@ struct OptionRow {
   int most_values = 0;
   bool repeats = false;
   bool required = false;
-  std::string description;  // including range and default
+  std::string description;              // including range and default
+  std::optional<flags::FileMark> file;  // if it names one
 };
 
 struct CommandTable {

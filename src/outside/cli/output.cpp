@@ -52,15 +52,6 @@ void require_free_file(const fs::path& path, bool force) {
                     "name another file, or replace it with --force"});
 }
 
-void require_not_read(const fs::path& output, std::initializer_list<fs::path> inputs) {
-  for (const fs::path& input : inputs) {
-    std::error_code ignored;
-    if (!fs::equivalent(output, input, ignored) || !fs::is_regular_file(output, ignored)) continue;
-    throw InputError({output.string(), 0, "is read and would be replaced", "its contents would be lost",
-                      "name another file for the result"});
-  }
-}
-
 namespace {
 
 // Null for a pipe or device, which has been written directly.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <initializer_list>
 #include <iosfwd>
 #include <span>
 #include <string>
@@ -31,8 +30,6 @@ void write_scene_files(const SceneFiles& scene);
 
 // Throws InputError if the file exists, unless it may be replaced. Pipes and devices may always be written to.
 void require_free_file(const std::filesystem::path& path, bool force);
-// Throws InputError if the output is one of the files that the command reads, which --force is not meant to replace.
-void require_not_read(const std::filesystem::path& output, std::initializer_list<std::filesystem::path> inputs);
 
 // Throws InputError if the printed text could not be written, for example because the disk is full.
 void check_output(std::ostream& out);

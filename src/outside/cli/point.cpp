@@ -9,6 +9,7 @@
 #include "cli/output.h"
 #include "exactff/slips.h"
 #include "exactff/study.h"
+#include "flags/file_options.h"
 #include "flags/vector.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
@@ -200,7 +201,8 @@ void add_output_flags(CLI::App& app, PointArguments& args) {
                "Show which stages ran, which were skipped and why, and the occluders that hide a part of the source");
   app.add_option("--svg", args.svg,
                  "Draw the source in its plane, with the shadows of the occluders and the visible region")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kSvg));
 }
 
 void add_adaptive_flags(CLI::App& app, PointArguments& args) {

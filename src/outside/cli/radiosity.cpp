@@ -23,6 +23,8 @@
 #include "cli/view_factor_words.h"
 #include "exactff/jobs.h"
 #include "exactff/version.h"
+#include "files/file.h"
+#include "flags/file_options.h"
 #include "flags/lists.h"
 #include "flags/scene.h"
 #include "radiosity/narrowing.h"
@@ -87,8 +89,8 @@ struct RadiosityArguments {
     std::error_code ignored;
     return !output.empty() && matrix.empty() && !std::filesystem::is_other(output, ignored);
   }
-  [[nodiscard]] std::string kept_factors() const { return output + ".factors"; }
-  [[nodiscard]] std::string kept_again() const { return output + ".again"; }
+  [[nodiscard]] std::string kept_factors() const { return flags::kept_factors_of(output); }
+  [[nodiscard]] std::string kept_again() const { return flags::kept_again_of(output); }
   [[nodiscard]] bool for_people() const { return !plain && !json && !csv; }
   [[nodiscard]] radiosity::Origin origin() const { return {scene.divide, two_sided}; }
 };
@@ -282,17 +284,10 @@ void check_outputs(const RadiosityArguments& args) {
     text::refuse("--resume is given without -o", "finished view factors are kept beside the file of -o",
                  "name a file, for example -o radiosities.csv");
   }
-  if (!args.output.empty()) require_free_file(args.output, args.force);
-  require_not_read(args.output, {args.scene.path, args.matrix});
-  std::vector<OutputFile> before;
-  if (!args.output.empty()) before.push_back({"-o", args.output});
-  if (args.keeps_work()) {
-    jobs::require_free(args.kept_factors(), args.existing());
-    before.push_back({"the view factors of -o", args.kept_factors()});
-    before.push_back({"their journal", jobs::journal_of(args.kept_factors())});
-    before.push_back({"those computed again", jobs::journal_of(args.kept_again())});
-  }
-  check_output_files({{"--vtk", args.vtk}}, before, args.force);
+  const bool may_replace = args.existing() != jobs::Existing::kRefuse;
+  if (!args.output.empty()) require_free_file(args.output, may_replace);
+  if (args.keeps_work()) jobs::require_free(args.kept_factors(), args.existing());
+  check_output_files({{"--vtk", args.vtk}}, may_replace);
 }
 
 void warn_of_darkness(const Scene& scene, const std::vector<Selection>& patches) {
@@ -488,11 +483,16 @@ void add_outputs(CLI::App& command, RadiosityArguments& args) {
   auto* csv = command.add_flag("--csv", args.csv, "Print CSV");
   plain->excludes(json)->excludes(csv);
   json->excludes(csv);
-  command.add_option("-o,--output", args.output, "Write a CSV file")->type_name("FILE");
+  command.add_option("-o,--output", args.output, "Write a CSV file")
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kCsv, flags::Beside::kViewFactors));
   command.add_option("--vtk", args.vtk, "Write the scene with its radiosities for ParaView, as NAME.vtp or NAME.vtu")
-      ->type_name("FILE");
-  command.add_flag("--resume", args.resume, "Continue an interrupted run with its kept view factors; needs -o");
-  command.add_flag("--force", args.force, "Replace existing files");
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kVtk));
+  CLI::Option* resume =
+      command.add_flag("--resume", args.resume,
+                       "Continue an interrupted run with its kept view factors, or keep a complete file; needs -o");
+  command.add_flag("--force", args.force, "Start again and replace existing files")->excludes(resume);
 }
 
 }  // namespace
@@ -535,3 +535,4 @@ Command add_radiosity(CLI::App& app) {
 }
 
 }  // namespace exactff::cli
+      ->check(flags::is_read())

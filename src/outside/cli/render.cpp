@@ -16,6 +16,7 @@
 #include "cli/render_output.h"
 #include "flags/camera.h"
 #include "flags/engine.h"
+#include "flags/file_options.h"
 #include "flags/lists.h"
 #include "flags/scene.h"
 #include "flags/solution.h"
@@ -126,7 +127,6 @@ void check_arguments(const RenderArguments& args) {
     text::refuse("--layers needs an EXR file and no --against", "a PNG file and a picture of errors have no layers",
                  "name a .exr file, without --against");
   }
-  require_not_read(args.image, {args.scene.path, args.solution.file});
   check_files({args.image}, {args.doubles, args.bounds});
 }
 
@@ -307,7 +307,8 @@ void add_value_flags(CLI::App& app, RenderArguments& args) {
       ->capture_default_str();
   app.add_option("--method", args.method, "Render by this method instead of exactly")->type_name("METHOD");
   app.add_option("--against", args.against, "Show and print the errors of this method, or of this picture")
-      ->type_name("METHOD|FILE");
+      ->type_name("METHOD|FILE")
+      ->check(flags::is_read());
   app.add_flag("--strip", args.strip, "With --against: the picture, that of the method and the errors side by side");
 }
 
@@ -321,10 +322,12 @@ void add_output_flags(CLI::App& app, RenderArguments& args) {
   app.add_option(
          "--double", args.doubles,
          "Also write the numbers as a NumPy file of doubles, shape (height, width, 3), NaN where nothing is met")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kNpy));
   app.add_option("--bounds", args.bounds,
                  "Also write their bounds as a NumPy file, shape (2, height, width, 3): lower, upper")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kNpy));
 }
 
 }  // namespace
@@ -346,7 +349,8 @@ Command add_render(CLI::App& app) {
       ->type_name("N");
   command->add_option("-o,--output", args->image, "Image to write, .exr or .png; an existing one is replaced")
       ->required()
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kImage, flags::Beside::kJournal));
   CLI::Option* resume = command->add_flag("--resume", args->resume, "Continue an interrupted run, if there is one");
   command->add_flag("--force", args->force, "Start again: discard the tiles of an interrupted run")->excludes(resume);
   command->footer(kRenderFooter);

@@ -103,23 +103,14 @@ std::string words_of_pixels(const render::Picture& picture) {
 }  // namespace
 
 void check_files(const std::vector<std::string>& images, const std::vector<std::string>& arrays) {
-  std::vector<fs::path> seen;
-  const auto check = [&](const std::string& file) {
-    const fs::path path = fs::absolute(file).lexically_normal();
-    if (std::ranges::find(seen, path) != seen.end()) {
-      text::refuse(path, "is named for two results", "the second would replace the first", "name different files");
-    }
-    seen.push_back(path);
-    check_file(file);
-  };
-  for (const std::string& file : images) check(file);
+  for (const std::string& file : images) check_file(file);
   for (const std::string& file : arrays) {
     if (file.empty()) continue;
     if (fs::path(file).extension() != ".npy") {
       text::refuse(fs::path(file), "does not end in .npy", "it is a NumPy file, which other programs recognise by that",
                    "name a .npy file");
     }
-    check(file);
+    check_file(file);
   }
 }
 

@@ -16,7 +16,7 @@ struct Rendered {
   std::optional<render::Errors> errors = {};
 };
 
-// Throws InputError if a file cannot be written, or if two of them are the same. Empty names are left out.
+// Throws InputError if a file cannot be written. Empty names are left out.
 void check_files(const std::vector<std::string>& images, const std::vector<std::string>& arrays);
 
 struct RenderFiles {

@@ -8,6 +8,7 @@
 #include "cli/completion.h"
 #include "cli/manual.h"
 #include "cli/output.h"
+#include "flags/file_options.h"
 
 namespace exactff::cli {
 namespace {
@@ -33,7 +34,9 @@ struct DescriptionArguments {
 };
 
 void add_file(CLI::App& command, DescriptionArguments& args) {
-  command.add_option("-o,--output", args.file, "File to write instead of standard output")->type_name("FILE");
+  command.add_option("-o,--output", args.file, "File to write instead of standard output")
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kAny));
 }
 
 }  // namespace

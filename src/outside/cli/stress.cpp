@@ -9,6 +9,7 @@
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/text_table.h"
+#include "flags/file_options.h"
 #include "report/plan.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -168,7 +169,9 @@ Command add_stress(CLI::App& app) {
   command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
-  command->add_option("-o,--output", args->folder, "Folder for the report and the tables")->type_name("DIR");
+  command->add_option("-o,--output", args->folder, "Folder for the report and the tables")
+      ->type_name("DIR")
+      ->check(flags::is_written_folder());
   command->footer(kStressFooter);
   return {command, [args] { return run(*args); }};
 }

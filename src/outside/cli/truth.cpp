@@ -18,12 +18,12 @@
 #include "cli/truth_summary.h"
 #include "exactff/slips.h"
 #include "flags/engine.h"
+#include "flags/file_options.h"
 #include "flags/receivers.h"
 #include "flags/scene.h"
 #include "flags/solution.h"
 #include "flags/sources.h"
 #include "text/escape.h"
-#include "text/nearest_names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
@@ -143,10 +143,6 @@ void check_totals(const TruthArguments& args) {
     text::refuse("--exr is given, but the receivers are not the pixels of an image",
                  "each pixel shows the value at its own point", "add --receivers FILE.exr, or use --npy or --vtk");
   }
-  if (text::in_lower_case(std::filesystem::path(args.file).extension().string()) == ".exr") {
-    text::refuse(std::filesystem::path(args.file), "is named as an image", "-o is the truth file, which is CSV",
-                 "write -o FILE.csv --exr " + text::shell_word(args.file));
-  }
 }
 
 // What a pipe cannot have.
@@ -191,7 +187,6 @@ int write_to_standard_output(const TruthArguments& args) {
 // Before anything that takes time.
 void check_outputs(const TruthArguments& args) {
   check_totals(args);
-  require_not_read(args.file, {args.scene.path, args.solution.file});
   jobs::require_free(args.file, args.existing());
   const std::vector<std::string> further = args.further.flags();
   if (further.empty()) return;
@@ -204,7 +199,7 @@ void check_outputs(const TruthArguments& args) {
                                         : "after exactff merge, run this command without --shard, with --resume and -o "
                                           "FILE for the merged file"});
   }
-  check_further_files(args.further, args.file, args.existing() != jobs::Existing::kRefuse);
+  check_further_files(args.further, args.existing() != jobs::Existing::kRefuse);
 }
 
 // Returns 0, or the exit code of the signal that interrupted it.
@@ -317,7 +312,8 @@ Command add_truth(CLI::App& app) {
       ->add_option("-o,--output", args->file,
                    "CSV file to write; - writes to standard output, without journal, --resume or shards")
       ->required()
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(flags::is_written(flags::Format::kCsv, flags::Beside::kJournal));
   args->further.add_numpy_to(*command);
   args->further.add_vtk_to(*command);
   args->further.add_exr_to(*command);

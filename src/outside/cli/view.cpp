@@ -16,6 +16,7 @@
 #include "exactff/scene_files.h"
 #include "exactff/version.h"
 #include "exactff/view.h"
+#include "flags/file_options.h"
 #include "flags/scene.h"
 #include "flags/vector.h"
 #include "text/csv_row.h"
@@ -300,7 +301,8 @@ void add_output_flags(CLI::App& app, ViewArguments& args) {
 void add_file_flags(CLI::App& app, ViewArguments& args) {
   CLI::Option* svg = app.add_option("--svg", args.svg,
                                     "Draw all that the receiver sees above its horizon, with its normal in the middle")
-                         ->type_name("FILE");
+                         ->type_name("FILE")
+                         ->check(flags::is_written(flags::Format::kSvg));
   app.add_option("--projection", args.projection,
                  "nusselt: areas in the picture are form factors times pi; fisheye: stereographic, which keeps angles")
       ->capture_default_str()
@@ -310,7 +312,8 @@ void add_file_flags(CLI::App& app, ViewArguments& args) {
       app.add_option("--mesh", args.mesh,
                      "Write the visible regions in space, cut into triangles: .obj, .ply, .stl, .off, .vs3, .vtp or "
                      ".vtu; --json then has their exact shares of the faces")
-          ->type_name("FILE");
+          ->type_name("FILE")
+          ->check(flags::is_written(flags::Format::kMesh, flags::Beside::kMaterials));
   app.add_flag("--force", args.force, "Replace an existing file of --mesh")->needs(mesh);
   flags::add_vector_option(app, "--up", args.up, "The direction that points upwards in the picture (default: 0 1 0)")
       ->needs(svg);

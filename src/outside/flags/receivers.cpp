@@ -8,6 +8,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "flags/file_options.h"
 #include "flags/lists.h"
 #include "text/escape.h"
 #include "text/nearest_names.h"
@@ -207,7 +208,8 @@ void add_receiver_options(CLI::App& app, ReceiverArguments& args) {
                  "CSV file with the columns id,x,y,z,nx,ny,nz,on, or a truth file, instead of --on; - for standard "
                  "input; or an "
                  "EXR file with the visible point and normal of each pixel")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(is_read());
   app.add_option("--position-layer", args.layers.position,
                  "Layer of the points in an EXR file, in world coordinates (default: position or P)")
       ->type_name("LAYER");

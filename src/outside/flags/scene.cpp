@@ -4,6 +4,7 @@
 
 #include "exactff/models.h"
 #include "exactff/scene_files.h"
+#include "flags/file_options.h"
 #include "flags/lists.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -44,10 +45,12 @@ Scene divided_with_note(const Scene& scene, double length) {
 }
 
 void SceneArguments::add_to(CLI::App& app) {
+  command = &app;
   app.add_option("SCENE", path,
                  "File (OBJ, PLY, STL, OFF, View3D), - for an OBJ file from standard input, or "
                  "@MODEL[:SETTING=VALUE,...] for a generated scene: `exactff info @` lists them")
-      ->required();
+      ->required()
+      ->check(is_read());
   app.add_option("--patches", patches,
                  "What a patch is: groups (g lines; without them, o lines) or faces (each face is a patch NAME:k)")
       ->check(CLI::IsMember({"groups", "faces"}))
@@ -77,6 +80,7 @@ Scene SceneArguments::load() const {
   Scene scene = from_standard_input()   ? read_obj(std::cin, kStandardInput, options())
                 : path.starts_with('@') ? models::make_scene(path.substr(1), options())
                                         : read_scene(path, options());
+  if (command != nullptr) require_not_written(*command, scene.files());
   if (!flip.empty()) scene = scene.with_flipped(changed(scene, "--flip", flip));
   if (!transparent.empty()) scene = scene.with_transparent(changed(scene, "--transparent", transparent));
   return divide ? divided_with_note(scene, *divide) : std::move(scene);

@@ -21,6 +21,7 @@ struct SceneArguments {
   bool skip_bad_faces = false;
   std::vector<std::string> flip, transparent;  // each a name, a comma list of names, or "all"
   std::optional<double> divide;                // of commands with add_divide_to()
+  const CLI::App* command = nullptr;           // of add_to(); none of its outputs may replace a file of the scene
 
   void add_to(CLI::App& app);
   void add_divide_to(CLI::App& app);  // --divide LENGTH
@@ -28,7 +29,7 @@ struct SceneArguments {
 
   [[nodiscard]] SceneOptions options() const;
   // Reads or generates the scene, changes it as --flip and --transparent say, and divides it, with a note on standard
-  // error. Throws InputError.
+  // error. Throws InputError, also if an output of the command would replace a file that the scene was read from.
   [[nodiscard]] Scene load() const;
 };
 

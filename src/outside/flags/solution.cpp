@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "exactff/matrix.h"
+#include "flags/file_options.h"
 #include "flags/lists.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -41,7 +42,8 @@ void SolutionArgument::add_to(CLI::App& app) {
          "--radiosity", file,
          "Light after all bounces: radiosities of all patches, by `exactff radiosity SCENE -o FILE`; --divide and "
          "--two-sided of that command are taken from the file")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(is_read());
 }
 
 LitScene load(const SceneArguments& scene, const SolutionArgument& solution) {

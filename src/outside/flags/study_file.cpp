@@ -1,6 +1,8 @@
 #include "flags/study_file.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iterator>
 
 #include "flags/comparison.h"
 #include "kernel/float_environment.h"
@@ -99,6 +101,7 @@ ComparisonArguments arguments_of(const StudyLine& line, const std::string& file)
     throw InputError(Problem{file, line.number, error.what(), "the line has the flags of a scene",
                              "exactff compare --help explains these flags"});
   }
+  args.scene.command = nullptr;  // the line has no outputs
   const std::string& path = args.scene.path;
   if (!path.starts_with('@')) args.scene.path = (std::filesystem::path(file).parent_path() / path).string();
   if (!args.receivers.file.empty()) {
@@ -134,7 +137,9 @@ void add_scene(const StudyLine& line, const std::string& file, report::Plan& pla
     plan.left_out.push_back({name, "this report is abridged"});
     return;
   }
+  if (!args.receivers.file.empty()) plan.files_read.emplace_back(args.receivers.file);
   Comparison comparison = comparison_of(std::move(args), plan.effort.abridged, plan.effort.threads);
+  std::ranges::copy(comparison.scene->files(), std::back_inserter(plan.files_read));
   plan.add_scene(std::move(comparison.title), std::move(comparison.scene), std::move(comparison.request),
                  std::move(comparison.warnings));
 }

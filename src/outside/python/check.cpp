@@ -7,6 +7,7 @@
 #include "check/json.h"
 #include "check/junit.h"
 #include "check/words.h"
+#include "files/apart.h"
 #include "files/file.h"
 #include "python/bindings.h"
 
@@ -49,6 +50,16 @@ void write_file(const std::filesystem::path& path, const std::string& text) {
   file.commit();
 }
 
+// Before anything is written.
+void require_apart(const CheckFiles& files, std::vector<files::NamedFile> read) {
+  if (files.baseline) read.push_back({"baseline", *files.baseline});
+  std::vector<files::NamedFile> written;
+  if (files.junit) written.push_back({"junit", *files.junit});
+  if (files.write_baseline) written.push_back({"write_baseline", *files.write_baseline});
+  for (const files::NamedFile& output : written) files::require_not_read(output, read);
+  files::require_apart(written);
+}
+
 py::tuple statistics_of(const check::Report& report) {
   const check::Statistics& all = report.overall;
   return py::make_tuple(all.rows, all.not_finite, all.leaks, all.bias, distribution(all.absolute),
@@ -81,6 +92,7 @@ py::tuple result_of(check::Report report, const CheckFiles& files) {
 py::tuple check_files(const std::filesystem::path& truth_file, const std::filesystem::path& candidate_file,
                       const std::string& truth_column, const std::string& value_column, bool by_position,
                       double tolerance, bool partial, const Limits& limits, const CheckFiles& files) {
+  require_apart(files, {{"truth", truth_file}, {"values", candidate_file}});
   check::MatchOptions options;
   options.by = by_position ? check::MatchBy::kPosition : check::MatchBy::kReceiver;
   options.tolerance = tolerance;
@@ -105,6 +117,7 @@ check::Report judged(const check::Truth& truth, const Numbers& values, const Lim
 // Values for the rows of a truth file, in their order.
 py::tuple check_values(const std::filesystem::path& truth_file, const Numbers& values, const std::string& truth_column,
                        const Limits& limits, const CheckFiles& files) {
+  require_apart(files, {{"truth", truth_file}});
   const check::Truth truth = [&] {
     const py::gil_scoped_release released;
     return check::read_truth(truth_file, truth_column);
@@ -124,6 +137,7 @@ py::tuple check_arrays(const Numbers& exact, const Numbers& lower, const Numbers
                        const py::array_t<std::int8_t>& status, const std::vector<std::string>& receivers,
                        const std::vector<std::string>& sources, const Numbers& values, const Limits& limits,
                        const CheckFiles& files) {
+  require_apart(files, {});
   const auto f = exact.unchecked<2>(), low = lower.unchecked<2>(), high = upper.unchecked<2>();
   const auto state = status.unchecked<2>();
   check::Truth truth;

@@ -3,6 +3,7 @@
 #include <memory>
 #include <utility>
 
+#include "files/apart.h"
 #include "files/file.h"
 #include "jobs/compute.h"
 #include "jobs/leader.h"
@@ -64,6 +65,7 @@ jobs::Summary write(const Request& request, const fs::path& file, jobs::Existing
                     jobs::Team* team) {
   const kernel::StandardArithmetic arithmetic;
   const Rows rows(request);
+  files::require_not_read(file, request.scene->files());
   jobs::require_free(file, existing);
   if (jobs::is_complete(file, existing)) return account_of(file, rows);
   jobs::Summary summary;
@@ -93,6 +95,7 @@ int follow(jobs::Team& team, const std::function<Request()>& request, const jobs
 jobs::Summary merge(const std::vector<fs::path>& paths, const fs::path& file, jobs::Existing existing,
                     const jobs::RowHooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
+  files::require_not_read(file, paths);
   jobs::require_free(file, existing == jobs::Existing::kReplace ? existing : jobs::Existing::kRefuse);
   const jobs::MergedShards shards = jobs::read_shards(paths, kKind, hooks);
   EntryLines lines;

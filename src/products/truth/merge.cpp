@@ -1,4 +1,5 @@
 #include "exactff/truth.h"
+#include "files/apart.h"
 #include "files/file.h"
 #include "jobs/shards.h"
 #include "kernel/float_environment.h"
@@ -9,6 +10,7 @@ namespace exactff::truth {
 Summary merge(const std::vector<std::filesystem::path>& paths, const std::filesystem::path& file,
               jobs::Existing existing, const jobs::RowHooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
+  files::require_not_read(file, paths);
   jobs::require_free(file, existing == jobs::Existing::kReplace ? existing : jobs::Existing::kRefuse);
   const jobs::MergedShards shards = jobs::read_shards(paths, kKind, hooks);
   files::WholeFile whole(file);

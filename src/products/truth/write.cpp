@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "files/apart.h"
 #include "jobs/compute.h"
 #include "jobs/leader.h"
 #include "kernel/float_environment.h"
@@ -50,6 +51,7 @@ Summary write(Request request, const fs::path& file, jobs::Existing existing, co
               jobs::Team* team) {
   const kernel::StandardArithmetic arithmetic;
   const Rows rows(std::move(request));
+  files::require_not_read(file, rows.request().scene->files());
   jobs::require_free(file, existing);
   if (jobs::is_complete(file, existing)) return account_of(file, rows);
   Summary summary;

@@ -39,8 +39,9 @@ struct Plan {
   std::vector<std::string> experiments;  // names
   std::vector<LeftOut> left_out;         // scenes that an abridged report leaves out
   Effort effort;
-  std::string command_line;   // shown in the last section of the report
-  std::filesystem::path vtk;  // the file of write_vtk for the only scene; empty: none
+  std::string command_line;                       // shown in the last section of the report
+  std::filesystem::path vtk;                      // the file of write_vtk for the only scene; empty: none
+  std::vector<std::filesystem::path> files_read;  // of the scenes in a study file, and their receivers
 
   // Gives the scene a name that no other has.
   void add_scene(std::string scene_title, std::shared_ptr<const Scene> scene, study::Request request,

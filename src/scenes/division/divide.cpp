@@ -153,6 +153,7 @@ class Division {
   SceneBuilder start() const {
     const SceneInside::Data& data = SceneInside::data(scene_);
     SceneBuilder builder(data.file);
+    for (const std::filesystem::path& file : data.files) builder.read_from(file);
     for (const Vec3& v : points_.all()) builder.add_vertex(v);
     for (const Material& material : scene_.materials()) builder.add_material(material);
     for (std::size_t w = data.warnings_of_glass; w < data.warnings.size(); ++w) builder.warn(data.warnings[w]);

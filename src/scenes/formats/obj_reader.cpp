@@ -21,6 +21,7 @@
 #include "formats/readers.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
+#include "scene/scene_data.h"
 #include "text/encoding.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
@@ -437,6 +438,7 @@ void ObjReader::read_library(const fs::path& path, std::size_t line) {
     return warn(line, "material file " + text::in_quotes(path.string(), text::kShownName) + " cannot be read",
                 why + "its materials get Kd 1, Ke 0", "add the file if colours or emission matter");
   }
+  builder_.read_from(path);
   text::ProblemList warnings;
   for (Material& material : read_mtl(*text, path.string(), problems_, warnings)) {
     defined_.try_emplace(material.name, std::move(material));
@@ -489,7 +491,7 @@ Scene read_obj(std::istream& in, const fs::path& name, const SceneOptions& optio
 }
 
 Scene read_obj(const fs::path& path, const SceneOptions& options) {
-  return formats::read_obj(text::read_text_file(path, kPurpose), path, options);
+  return SceneInside::read_from(path, formats::read_obj(text::read_text_file(path, kPurpose), path, options));
 }
 
 }  // namespace exactff

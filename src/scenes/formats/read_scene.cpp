@@ -8,6 +8,7 @@
 #include "formats/file_kind.h"
 #include "formats/readers.h"
 #include "kernel/float_environment.h"
+#include "scene/scene_data.h"
 #include "text/text_file.h"
 
 namespace exactff {
@@ -51,7 +52,7 @@ Scene read_scene(std::string_view bytes, const std::filesystem::path& path, cons
 }
 
 Scene read_scene(const std::filesystem::path& path, const SceneOptions& options) {
-  return read_scene(text::read_file(path, kAnyFormat), path, options);
+  return SceneInside::read_from(path, read_scene(text::read_file(path, kAnyFormat), path, options));
 }
 
 }  // namespace exactff

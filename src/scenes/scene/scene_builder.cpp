@@ -109,6 +109,8 @@ void SceneBuilder::state_normal(const Vec3& normal) {
 
 void SceneBuilder::warn(Problem warning) { state().warnings.add(std::move(warning)); }
 
+void SceneBuilder::read_from(std::filesystem::path file) { state().data->files.push_back(std::move(file)); }
+
 Scene SceneBuilder::build() {
   const kernel::StandardArithmetic arithmetic;
   static_cast<void>(state());

@@ -1,6 +1,7 @@
 // What a Scene holds. Immutable once SceneBuilder::build has returned.
 #pragma once
 
+#include <filesystem>
 #include <mutex>
 #include <string>
 #include <unordered_map>
@@ -18,8 +19,9 @@ namespace exactff {
 
 struct Scene::Data {
   const SceneId id = next_id();
-  std::string file;
-  std::vector<Vec3> vertices;  // finite, no negative zero
+  std::string file;                          // its name in messages
+  std::vector<std::filesystem::path> files;  // that it was read from
+  std::vector<Vec3> vertices;                // finite, no negative zero
   std::vector<Material> materials;
   std::vector<Patch> patches;
   std::unordered_map<std::string, PatchId> patch_by_name;
@@ -55,6 +57,11 @@ struct Scene::Data {
 struct SceneInside {
   using Data = Scene::Data;
   [[nodiscard]] static const Data& data(const Scene& scene) { return scene.data(); }
+  // For a scene that nothing else uses yet.
+  static Scene read_from(const std::filesystem::path& file, Scene scene) {
+    scene.data_->files.insert(scene.data_->files.begin(), file);
+    return scene;
+  }
 };
 
 }  // namespace exactff

@@ -32,6 +32,7 @@ void flip(Piece& piece, std::vector<std::uint32_t>& corners) {
 std::unique_ptr<SceneInside::Data> copy_of(const SceneInside::Data& data) {
   auto copy = std::make_unique<SceneInside::Data>();
   copy->file = data.file;
+  copy->files = data.files;
   copy->vertices = data.vertices;
   copy->materials = data.materials;
   copy->patches = data.patches;

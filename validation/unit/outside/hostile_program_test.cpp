@@ -144,7 +144,7 @@ TEST_F(HostileProgram, FoldersThatMustNotBeReplacedAreNot) {
       {"link", "is a symbolic link"},
       {std::string(250, 'n'), "File name too long"},
       {".", "is the current folder"},
-      {"..", "is the current folder"},
+      {"..", "lies in the folder of the result"},  // the scene
       {"", "the name of the output folder is empty"},
   };
   for (const auto& [folder, message] : table) {

@@ -1,9 +1,14 @@
 // What the program says to flags that are misspelt or were removed, or have the wrong number of numbers.
+#include "cli/misused_flags.h"
+
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
+#include "cli/command.h"
+#include "cli/option_table.h"
+#include "support/complaint.h"
 #include "support/program.h"
 
 namespace exactff {
@@ -77,6 +82,35 @@ TEST_F(MisusedFlags, RemovedFlagsTellWhatServesInstead) {
   expect_refused({"radiosity", scene, "--draft"},
                  "exactff radiosity has no flag --draft (the command line has '--draft'); `exactff help radiosity` "
                  "lists its flags");
+}
+
+TEST_F(MisusedFlags, AFlagIsNoNameNorFileOfAnother) {
+  expect_refused({"radiosity", scene, "--two-sided", "--accuracy", "1e-2"},
+                 "--two-sided needs a name (--accuracy follows, which begins like a flag); write --two-sided NAME...");
+  expect_refused({"matrix", scene, "--two-sided", "floor", "-o", "--force"},
+                 "-o needs a file (--force follows, which begins like a flag); write -o FILE");
+  expect_refused({"compare", scene, "-o"}, "-o needs a folder (nothing follows it); write -o DIR");
+  expect_refused({"point", scene, "--source", "--lamp"},
+                 "--source needs a name (--lamp follows, which begins like a flag); write --source NAME[:K]..., or "
+                 "--source=--lamp if that is meant");
+  const auto run = validation::run_program(
+      EXACTFF_PROGRAM,
+      {"info", directory.write("s.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\ng --lamp\nf 1 2 3\n"), "--flip=--lamp"});
+  EXPECT_EQ(run.exit_code, 0);
+}
+
+// Every option of every command that takes a value, before a flag of its own command.
+TEST_F(MisusedFlags, NoFlagIsTakenForAValue) {
+  CLI::App app("", "exactff");
+  (void)cli::add_commands(app);
+  for (const cli::CommandTable& command : cli::program_table(app).commands) {
+    for (const cli::OptionRow& option : command.options) {
+      if (option.value.empty() || option.least_values > 1) continue;
+      const std::vector<std::string> words = {command.name, option.names.back(), "-h"};
+      const std::string said = validation::complaint([&] { cli::refuse_flags_without_values(app, words); });
+      EXPECT_TRUE(said.starts_with(option.names.back() + " needs a ")) << said;
+    }
+  }
 }
 
 TEST_F(MisusedFlags, NumbersMayBeNegativeOrWithoutADigitBeforeThePoint) {

@@ -131,7 +131,8 @@ TEST_F(RenderCommand, BadInputIsRefusedWithWords) {
   refused({"-o", image, "--size", "0x4"}, "0x4 pixels");
   refused({"-o", image, "--size", "60000x60000"}, "GB of memory");
   refused({"-o", image, "--double", path("x.txt")}, "does not end in .npy");
-  refused({"-o", image, "--double", path("x.npy"), "--bounds", path("./x.npy")}, "named for two results");
+  refused({"-o", image, "--double", path("x.npy"), "--bounds", path("./x.npy")},
+          "is given for two outputs (--double and --bounds)");
   refused({"-o", image, "--strip"}, "--strip is given without --against");
   refused({"-o", image, "--layers"}, "--layers needs an EXR file");
   refused({"-o", path("x.exr"), "--exposure", "2"}, "not scaled");

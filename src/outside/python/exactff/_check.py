@@ -118,8 +118,8 @@ def check(truth: Union[_Path, FormFactors, ArrayLike], values: Union[_Path, Arra
     match, tolerance, partial, truth_column, value_column : as of ``exactff check``
     receivers : names for the report, of arrays: the :class:`Receivers` themselves, or one name for each
     baseline : a file of recorded errors; an error that is worse by more than the share `slack` of it is a failure
-    write_baseline : record these errors in the file, unless one got worse or a value is not finite; so a baseline
-        is never loosened
+    write_baseline : record these errors in the file, which is not that of `baseline`, unless one got worse or a value
+        is not finite
     junit : write the verdicts as JUnit XML, for Jenkins, GitLab and others
 
     Without any limit only finiteness is checked. Raises InputError for files, arrays and limits that cannot be used.
