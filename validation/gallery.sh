@@ -21,7 +21,8 @@ render cornell_box "${box[@]}" --size 1200x1200 --exposure 16
 cells=$(mktemp -d)
 trap 'rm -r "$cells"' EXIT
 for length in 140 278; do
-  "$program" radiosity "${box[0]}" --divide $length --accuracy 1e-3 --budget 1000 -o "$cells/c$length.csv" > /dev/null
+  "$program" radiosity "${box[0]}" --divide $length --accuracy 1e-3 --budget 1000 -o "$cells/c$length.csv" > /dev/null ||
+    [ $? -eq 3 ] # wider than asked
 done
 all() {  # LENGTH SIZE IMAGE [FLAG...]
   local solution=$cells/c$1.csv size=$2 image=$3

@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -74,6 +75,7 @@ struct Solution {
   // Why the two sides of the balance need not agree: "some faces are transparent". Empty: they agree.
   std::vector<std::string> reasons_against_balance;
   bool lost_is_rest = false;       // back or open are not computed, so that the balance tests less: no row is above 1
+  std::size_t wide = 0;            // view factors between patches that are wider than the accuracy asked for
   std::optional<double> width;     // as asked for in Options
   std::size_t computed_again = 0;  // view factors, for this width
 
@@ -140,7 +142,7 @@ struct Origin {
 
 // A row for each patch and channel: patch,channel,radiosity,lower,upper,irradiance,irradiance_lower,irradiance_upper,
 // claim,area, and variation if it is set. What is infinite or not known is empty, and the claim is then "no bound". The
-// head states the scene's hash and the origin.
+// head states the scene's hash, the origin, what was asked for, and how many view factors are wider.
 [[nodiscard]] std::string csv_text(const Scene& scene, const Solution& solution, const ViewFactorOptions& options,
                                    const Origin& origin = {});
 
@@ -150,15 +152,26 @@ struct SolutionFile {
     std::string patch;
     std::size_t channel = 0;  // of kChannelNames
     BoundedValue radiosity;   // upper infinite: no bound
+    BoundedValue irradiance;
+    double area = 0.0;
+    double variation = 0.0;  // NaN: there is none
   };
   std::string file;
   std::string scene_hash;
   Origin origin;
+  double accuracy = 0.0;  // of the view factors, as asked for; 0 if the head does not say
+  std::uint64_t budget = 0;
+  std::size_t wide = 0;  // as in Solution
+  std::optional<double> width = {};
   Claim claim = Claim::kZero;  // the weakest of all rows with bounds
   std::vector<Row> rows;
 };
 // Throws one InputError with file:line for every problem.
 [[nodiscard]] SolutionFile read_csv(const std::filesystem::path& file);
+
+// What csv_text was given, but for what no row has: the balance, claim_of_balance, and why there is no bound. Throws
+// InputError if the file is of another scene, by its hash and names.
+[[nodiscard]] Solution solution_of(const Scene& scene, const SolutionFile& file);
 
 // --- Gathering ---
 

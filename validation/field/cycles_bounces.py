@@ -59,7 +59,7 @@ class Gathered:
         length = f"{BOX / parts:g}"
         if not solution.exists():
             run([program, "radiosity", SCENE, "--divide", length, "--accuracy", "1e-3", "--budget", "100", "-o",
-                 solution])
+                 solution], passing=(0, 3))  # 3: wider than asked
         if not image.exists():
             render_exactly(program, size, image, "--radiosity", solution)
         self.parts, self.values = parts, channels(image, "RGB")

@@ -8,7 +8,7 @@
 namespace exactff::cli {
 
 // Registers the command with `app` and returns the function that runs it. That function returns the exit code: 0 done,
-// 1 a check failed, 2 bad input (by InputError), 3 not certified, 4 internal.
+// 1 a check failed, 2 bad input (by InputError), 3 not as accurate or certified as asked, 4 internal.
 struct Command {
   CLI::App* app = nullptr;
   std::function<int()> run;

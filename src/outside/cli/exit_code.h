@@ -6,7 +6,7 @@
 namespace exactff::cli {
 
 inline constexpr int kBadInput = 2;
-inline constexpr int kNotCertified = 3;  // a value is not certified within the cap on precision
+inline constexpr int kNotAsAsked = 3;  // a value is not as accurate or certified as asked
 inline constexpr int kInternalFailure = 4;
 
 // The return value of the command. If it throws, prints why and returns 2 or 4.

@@ -20,7 +20,7 @@ A check failed.
 Bad input; a message says what the problem is, why it matters and what to do.
 .TP
 .B 3
-A value could not be certified; its bounds are still valid.
+A value is not as accurate or certified as asked; its bounds are still valid.
 .TP
 .B 4
 Internal error, or out of memory.

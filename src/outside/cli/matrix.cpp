@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/exit_code.h"
 #include "cli/further_files.h"
 #include "cli/kept_work.h"
 #include "cli/long_run.h"
@@ -20,8 +21,8 @@
 #include "cli/text_table.h"
 #include "cli/view_factor_words.h"
 #include "exactff/version.h"
-#include "flags/lists.h"
 #include "flags/file_options.h"
+#include "flags/lists.h"
 #include "flags/scene.h"
 #include "matrix/row_facts.h"
 #include "matrix/row_on_faces.h"
@@ -39,8 +40,9 @@ constexpr const char* kMatrixFooter =
     "the form factor from a point to j. Its interval is proved or estimated. 'zero' is proved. 'estimated' means\n"
     "that the error is an estimate, with all roundings in it. By cells, what each cell sees is proved, and the\n"
     "error comes from rules of quadrature. By points, which cost less behind many occluders, the interval comes\n"
-    "from exact form factors at random points; it misses with a probability of at most 1e-6. A warning counts the\n"
-    "entries that are wider than the accuracy, in this direction or from the other patch.\n"
+    "from exact form factors at random points; it misses with a probability of at most 1e-6. If entries\n"
+    "are wider than the accuracy, in this direction or from the other patch, a warning counts them, and the exit\n"
+    "code is 3; a shard leaves both to exactff merge.\n"
     "With --claim certified, or --certify, every entry is 'zero' or 'certified': the remainder of the quadrature\n"
     "and all roundings are proved as well. It takes up to a few times as long, and less time if the accuracy is\n"
     "below 1e-9. With --backs and --to all,sky each row also has the share that meets backs of faces, and the share\n"
@@ -311,14 +313,16 @@ void print_summary(const MatrixArguments& args, const jobs::Summary& summary) {
 // The values of the finished file, or of no file at all.
 int finish(const MatrixArguments& args, const MatrixJob& job, const matrix::Matrix& matrix) {
   const matrix::Options& options = job.request.options;
-  print_warnings(problems_of_width(job.scene, matrix, options.factors));
+  const std::vector<Problem> wide = problems_of_width(job.scene, matrix, options.factors);
+  print_warnings(wide);
   write_files(args, job.scene, options, matrix);
   args.plain ? print_plain(job.scene, matrix) : print_table(job.scene, matrix);
   const bool rows_hold = test_rows(args, job.scene, matrix),
              directions_agree = test_reciprocity(args, job.scene, matrix);
   if (!args.plain) print_files(args);
   check_output(std::cout);
-  return rows_hold && directions_agree ? 0 : 1;
+  if (!rows_hold || !directions_agree) return 1;
+  return wide.empty() ? 0 : kNotAsAsked;
 }
 
 int write(const MatrixArguments& args, jobs::Team* team) {

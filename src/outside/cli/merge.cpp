@@ -1,4 +1,6 @@
 // exactff merge: joins the shards of a truth file or of a matrix.
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -11,9 +13,9 @@
 #include "cli/truth_summary.h"
 #include "exactff/matrix.h"
 #include "exactff/truth.h"
+#include "flags/file_options.h"
 #include "text/escape.h"
 #include "text/phrases.h"
-#include "flags/file_options.h"
 #include "text/refuse.h"
 
 namespace exactff::cli {
@@ -36,6 +38,21 @@ struct MergeArguments {
   FurtherFiles further;
 };
 
+// Returns the exit code.
+int warn_of_wide_entries(const matrix::Table& table) {
+  std::ptrdiff_t wide = 0;
+  for (const auto* entries : {&table.entries, &table.back, &table.open}) {
+    wide += std::ranges::count(*entries, false, &ViewFactor::accurate);
+  }
+  if (wide == 0) return 0;
+  print_warnings(
+      std::vector<Problem>{{.what = text::counted(static_cast<std::uint64_t>(wide), "entry", "entries") +
+                                    (wide == 1 ? " is" : " are") + " wider than the accuracy",
+                            .why = "the column 'limit' tells why; their bounds are as strong as their claims",
+                            .suggestion = "run exactff matrix with --resume and -o for the merged file"}});
+  return kNotAsAsked;
+}
+
 int merge_matrix(const MergeArguments& args, const jobs::RowHooks& hooks, const ProgressBar& bar) {
   if (const std::vector<std::string> further = args.further.flags(); !further.empty()) {
     text::refuse(further.front() + " is given with shards of a matrix", "it writes the values of a truth file",
@@ -46,7 +63,7 @@ int merge_matrix(const MergeArguments& args, const jobs::RowHooks& hooks, const 
   bar.clear();
   std::cout << text::counted(summary.rows, "pair") << "\nMatrix: " << text::printable(args.file) << '\n';
   check_output(std::cout);
-  return 0;
+  return warn_of_wide_entries(matrix::read_csv(args.file));
 }
 
 int run(const MergeArguments& args) {

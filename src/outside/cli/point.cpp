@@ -141,7 +141,7 @@ int run(const CLI::App& command, const PointArguments& args) {
   check_output(std::cout);
   const bool certified = std::all_of(point.sources.begin(), point.sources.end(),
                                      [](const PointTerm& one) { return is_certified(one.exact); });
-  return certified ? 0 : kNotCertified;
+  return certified ? 0 : kNotAsAsked;
 }
 
 // A NaN passes every range check, since all its comparisons are false.

@@ -49,7 +49,8 @@ constexpr const char* kRadiosityFooter =
     "all patches. B lies between lower and upper. These bounds are as strong as the claim, the weakest of the view\n"
     "factors'. There is no upper bound where the bounds of the view factors do not prove that less light is\n"
     "reflected than arrives, as in a closed room of Kd 1. The output then says why, 'radiosity' is an estimate\n"
-    "(unknown, if some Kd is 1), and the exit code is 3.\n"
+    "(unknown, if some Kd is 1).\n"
+    "The exit code is 3 without an upper bound, and if view factors miss the accuracy or bounds miss the width.\n"
     "Emitted light must be absorbed, meet backs of faces, or leave; if the bounds contradict this, the exit code is\n"
     "1. 'variation' shows where patches are too large: by how much the light that leaves single points of a patch\n"
     "(its centre, and near its corners), by exact form factors, differs from its one radiosity. --divide LENGTH\n"
@@ -60,7 +61,8 @@ constexpr const char* kRadiosityFooter =
     "--matrix FILE takes the view factors from a file of `exactff matrix SCENE -o FILE`. That run can be resumed,\n"
     "and shared out by --shard and mpirun. A file of another scene is refused.\n"
     "With -o FILE, finished view factors are kept until all is done: in FILE.factors.part, and those that --width\n"
-    "computes again in FILE.again.part. After an interruption, --resume continues from there.\n"
+    "computes again in FILE.again.part. After an interruption, --resume continues from there. A complete\n"
+    "FILE stays as it is, and the file of --vtk is made from it.\n"
     "The balance is printed as bounds [lower, upper]; a number alone is rounded to six digits. Lost light meets\n"
     "backs or leaves (open). One of the two is known where the other is proved to be zero. Elsewhere --backs\n"
     "computes what meets backs; a matrix made with --backs --to all,sky has both.\n"
@@ -85,6 +87,11 @@ struct RadiosityArguments {
 
   [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
   // While they are computed, view factors are kept beside the file of -o. A pipe or a device has no journal.
+  // Whether FILE is there, and nothing that belongs to an unfinished one.
+  [[nodiscard]] bool is_complete() const {
+    return files::is_there(output) && !files::is_there(kept_factors()) &&
+           !files::is_there(jobs::journal_of(kept_factors())) && !files::is_there(jobs::journal_of(kept_again()));
+  }
   [[nodiscard]] bool keeps_work() const {
     std::error_code ignored;
     return !output.empty() && matrix.empty() && !std::filesystem::is_other(output, ignored);
@@ -196,8 +203,11 @@ void print_variation(const Scene& scene, const Solution& solution, std::size_t c
             << "): smaller patches, by --divide, come closer to the true light.\n";
 }
 
+// Grey scenes are shown by one channel.
+std::size_t channels_of(const Scene& scene) { return is_grey(scene) ? 1 : kChannelNames.size(); }
+
 void print_for_people(const Scene& scene, const Solution& solution, bool balanced) {
-  const std::size_t channels = is_grey(scene) ? 1 : kChannelNames.size();
+  const std::size_t channels = channels_of(scene);
   print_radiosities(scene, solution, channels);
   print_variation(scene, solution, channels);
   print_balance(solution, channels);
@@ -325,6 +335,11 @@ bool test_balance(const Solution& solution) {
   return false;
 }
 
+void print_files(const RadiosityArguments& args) {
+  if (!args.output.empty()) std::cout << "Radiosities: " << text::printable(args.output) << '\n';
+  if (!args.vtk.empty()) std::cout << "VTK file: " << text::printable(args.vtk) << '\n';
+}
+
 void print(const RadiosityArguments& args, const Scene& scene, const Solution& solution, bool balanced) {
   if (args.plain) {
     print_plain(scene, solution);
@@ -334,8 +349,7 @@ void print(const RadiosityArguments& args, const Scene& scene, const Solution& s
     std::cout << csv_text(scene, solution, args.options.factors, args.origin());
   } else {
     print_for_people(scene, solution, balanced);
-    if (!args.output.empty()) std::cout << "Radiosities: " << text::printable(args.output) << '\n';
-    if (!args.vtk.empty()) std::cout << "VTK file: " << text::printable(args.vtk) << '\n';
+    print_files(args);
   }
 }
 
@@ -422,10 +436,14 @@ Solution solve_or_tell_what_is_kept(const RadiosityArguments& args, const Scene&
 }
 
 // Whether the bounds are as narrow as is wanted.
+bool are_wide_bounds(const Solution& solution) {
+  return solution.width && solution.is_bounded() && radiosity::widest_bounds(solution).share > *solution.width;
+}
+
 void warn_of_wide_bounds(const RadiosityArguments& args, const Scene& scene, const Solution& solution,
                          const matrix::Matrix& matrix) {
+  if (!are_wide_bounds(solution)) return;
   const radiosity::Widest widest = radiosity::widest_bounds(solution);
-  if (!solution.is_bounded() || widest.share <= *solution.width) return;
   const auto is_at_limit = [](const ViewFactor& f) { return f.limit != Limit::kNone; };
   const auto limited = static_cast<std::uint64_t>(std::ranges::count_if(matrix.factors.entries, is_at_limit));
   print_warnings(std::vector<Problem>{
@@ -437,12 +455,57 @@ void warn_of_wide_bounds(const RadiosityArguments& args, const Scene& scene, con
        .suggestion = "give more by --budget, or ask for less by --width"}});
 }
 
+// A width decides alone.
+int exit_code_of(const Solution& solution) {
+  const bool is_wide = solution.width ? are_wide_bounds(solution) : solution.wide > 0;
+  return solution.is_bounded() && !is_wide ? 0 : kNotAsAsked;
+}
+
+void require_same_request(const RadiosityArguments& args, const radiosity::SolutionFile& file) {
+  ViewFactorOptions options = args.options.factors;
+  if (!args.matrix.empty()) options = options_of(matrix::read_csv(args.matrix));
+  const bool is_same = file.accuracy == options.accuracy && file.budget == options.budget &&
+                       file.width == args.options.width &&
+                       (!options.certify || matrix::weaker(file.claim, Claim::kCertified) == Claim::kCertified);
+  if (is_same) return;
+  text::refuse(std::filesystem::path(file.file), "holds radiosities by other view factors",
+               "its head has another accuracy, budget, width or claim",
+               "use the same flags as before, name another file, or compute it again with --force");
+}
+
+// FILE is complete and stays as it is. It has no balance.
+int finish_again(const RadiosityArguments& args, const Scene& scene) {
+  const std::filesystem::path path = args.output;
+  if (args.json) {
+    text::refuse(path, "is complete, and --json is given", "the balance is not in the file",
+                 "leave out --json, or compute it again with --force");
+  }
+  const radiosity::SolutionFile file = radiosity::read_csv(path);
+  const Solution solution = radiosity::solution_of(scene, file);
+  require_same_request(args, file);
+  if (!args.vtk.empty()) write_vtk(scene, solution, args.vtk);
+  std::cerr << "note: " << text::printable(args.output) << " is complete and stays as it is; --force makes it anew\n";
+  warn_of_no_bound(solution);
+  if (args.plain) {
+    print_plain(scene, solution);
+  } else if (args.csv) {
+    std::cout << text::read_text_file(path, "a CSV file");
+  } else {
+    print_radiosities(scene, solution, channels_of(scene));
+    print_variation(scene, solution, channels_of(scene));
+    print_files(args);
+  }
+  check_output(std::cout);
+  return exit_code_of(solution);
+}
+
 int run(const RadiosityArguments& given) {
   RadiosityArguments args = given;
   if (args.options.width) args.options.factors.accuracy = radiosity::accuracy_for(*args.options.width);
   if (args.accuracy) args.options.factors.accuracy = *args.accuracy;
   check_outputs(args);
   const Scene scene = load(args.scene, args.two_sided);
+  if (args.resume && args.is_complete()) return finish_again(args, scene);
   const std::vector<Selection> patches = radiosity::patches_of(scene);
   warn_of_darkness(scene, patches);
   if (std::optional<Problem> overlaps = problem_of_overlaps(scene, patches)) {
@@ -472,7 +535,7 @@ int run(const RadiosityArguments& given) {
   warn_of_no_bound(solution);
   print(args, scene, solution, balanced);
   check_output(std::cout);
-  return !balanced ? 1 : solution.is_bounded() ? 0 : kNotCertified;
+  return balanced ? exit_code_of(solution) : 1;
 }
 
 void add_outputs(CLI::App& command, RadiosityArguments& args) {
@@ -521,6 +584,7 @@ Command add_radiosity(CLI::App& app) {
   const ClaimOptions claims = add_claim(*command, args->options.factors.certify);
   command->add_option("--matrix", args->matrix, "Take the view factors from this file of exactff matrix")
       ->type_name("FILE")
+      ->check(flags::is_read())
       ->excludes(accuracy)
       ->excludes(budget)
       ->excludes(backs)
@@ -535,4 +599,3 @@ Command add_radiosity(CLI::App& app) {
 }
 
 }  // namespace exactff::cli
-      ->check(flags::is_read())

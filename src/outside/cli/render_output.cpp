@@ -152,7 +152,7 @@ int warn_of_uncertified_points(const Rendered& rendered) {
   if (points == 0) return 0;
   std::cerr << "exactff: the values of " << text::counted(points, "point")
             << " could not be certified within the precision cap; they are estimates, and their bounds are valid\n";
-  return kNotCertified;
+  return kNotAsAsked;
 }
 
 }  // namespace exactff::cli

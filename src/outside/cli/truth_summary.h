@@ -20,7 +20,7 @@ inline int warn_of_uncertified(const truth::Summary& summary) {
   std::cerr << "exactff: " << text::counted(uncertified, "row")
             << " could not be certified within the precision cap (their bounds are valid, their values are estimates); "
                "look for the status 'not certified'\n";
-  return kNotCertified;
+  return kNotAsAsked;
 }
 
 // Prints the summary. Returns the exit code: 3 if a row is not certified.

@@ -274,7 +274,7 @@ int run(const ViewArguments& args) {
     certified = certified && share.status != Status::kNotCertified &&
                 (patch == nullptr || patch->form_factor.status != Status::kNotCertified);
   });
-  return certified ? 0 : kNotCertified;
+  return certified ? 0 : kNotAsAsked;
 }
 
 void add_output_flags(CLI::App& app, ViewArguments& args) {

@@ -1,6 +1,7 @@
 // Solutions as CSV files.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,10 +35,32 @@ std::string origin_lines(const Origin& origin) {
   return lines;
 }
 
-std::string words_of_width(const Solution& solution) {
-  if (!solution.width) return {};
-  return ", " + text::counted(solution.computed_again, "entry", "entries") + " again for bounds of " +
-         text::shortest(*solution.width) + " of the brightest";
+constexpr std::string_view kAccuracy = "; view factors: accuracy ", kBudget = ", budget ", kWide = " wider than that",
+                           kAgainFor = " again for bounds of ";
+
+// "accuracy 1e-06, budget 100000 cells, 3 entries wider than that"
+std::string words_of_factors(const Solution& solution, const ViewFactorOptions& options) {
+  std::string words = std::string(kAccuracy) + text::shortest(options.accuracy) + std::string(kBudget) +
+                      std::to_string(options.budget) + " cells";
+  const auto add = [&](std::size_t count, std::string_view what) {
+    ((words += ", ") += text::counted(count, "entry", "entries")) += what;
+  };
+  if (solution.width) {
+    add(solution.computed_again, kAgainFor);
+    words += text::shortest(*solution.width) + " of the brightest";
+  } else if (solution.wide > 0) {
+    add(solution.wide, kWide);
+  }
+  return words;
+}
+
+// The number that follows the key; 0 if there is none.
+double number_after(std::string_view line, std::string_view key) {
+  const std::size_t at = line.find(key);
+  if (at == std::string_view::npos) return 0.0;
+  const std::string_view rest = line.substr(at + key.size());
+  const text::ParsedNumber number = text::parse_number(rest.substr(0, rest.find_first_of(", ")));
+  return number.fault == text::NumberFault::kNone ? number.value : 0.0;
 }
 
 bool has_variation(const Solution& solution) { return !solution.channels.front().variation.empty(); }
@@ -49,9 +72,8 @@ std::string csv_text(const Scene& scene, const Solution& solution, const ViewFac
   std::string text = "# exactff " + std::string(kVersion) +
                      " radiosity: what leaves each patch after all bounces, in the unit of Ke; areas in the scene's "
                      "unit squared\n# " +
-                     std::string(kSceneHash) + scene.hash() + "; view factors: accuracy " +
-                     text::shortest(options.accuracy) + ", budget " + std::to_string(options.budget) + " cells" +
-                     words_of_width(solution) + '\n' + origin_lines(origin) +
+                     std::string(kSceneHash) + scene.hash() + words_of_factors(solution, options) + '\n' +
+                     origin_lines(origin) +
                      "patch,channel,radiosity,lower,upper,irradiance,irradiance_lower,irradiance_upper,claim,area" +
                      (has_variation(solution) ? ",variation\n" : "\n");
   for (std::size_t i = 0; i < solution.patches.size(); ++i) {
@@ -86,6 +108,11 @@ class FileReader {
     lower_ = column("lower");
     upper_ = column("upper");
     claim_ = column("claim");
+    irradiance_ = csv_.column("irradiance");
+    irradiance_lower_ = csv_.column("irradiance_lower");
+    irradiance_upper_ = csv_.column("irradiance_upper");
+    area_ = csv_.column("area");
+    variation_ = csv_.column("variation");
   }
 
   SolutionFile read() {
@@ -104,9 +131,20 @@ class FileReader {
     const auto rest = [&](std::string_view key) {
       return line.starts_with(key) ? std::optional(line.substr(key.size())) : std::nullopt;
     };
-    if (const auto hash = rest(kSceneHash)) file_.scene_hash = hash->substr(0, hash->find(';'));
+    if (const auto head = rest(kSceneHash)) take_head(*head);
     if (const auto names = rest(kTwoSided)) file_.origin.two_sided.push_back(*names);
     if (const auto length = rest(kDivided)) take_length(*length);
+  }
+
+  void take_head(std::string_view head) {
+    file_.scene_hash = head.substr(0, head.find(';'));
+    file_.accuracy = number_after(head, kAccuracy);
+    file_.budget = static_cast<std::uint64_t>(number_after(head, kBudget));
+    if (head.find(kAgainFor) != std::string_view::npos) file_.width = number_after(head, kAgainFor);
+    const std::size_t wide = head.find(kWide), comma = head.rfind(", ", wide);
+    if (wide != std::string_view::npos && comma != std::string_view::npos) {
+      file_.wide = static_cast<std::size_t>(number_after(head.substr(comma), ", "));
+    }
   }
 
   void take_length(const std::string& text) {
@@ -129,13 +167,21 @@ class FileReader {
     take_claim(csv_.field(claim_));
     const bool bounded = !csv_.field(upper_).empty();
     const double lower = csv_.number(lower_), upper = bounded ? csv_.number(upper_) : HUGE_VAL;
-    const double value = bounded ? csv_.number(value_) : lower;
-    if (!(0.0 <= lower && lower <= value && value <= upper)) {
+    const double value = bounded ? csv_.number(value_) : number_or(value_, kNothing);
+    if (!(0.0 <= lower && lower <= upper) || value < lower || value > upper) {
       csv_.complain("the radiosity is not within its bounds, or negative", "the file contradicts itself",
                     "use the file as `exactff radiosity` wrote it");
     }
+    const BoundedValue irradiance{number_or(irradiance_, kNothing), number_or(irradiance_lower_, 0.0),
+                                  number_or(irradiance_upper_, HUGE_VAL)};
     file_.rows.push_back({csv_.field(patch_), static_cast<std::size_t>(channel - kChannelNames.begin()),
-                          BoundedValue{value, lower, upper}});
+                          BoundedValue{value, lower, upper}, irradiance, number_or(area_, 0.0),
+                          number_or(variation_, kNothing)});
+  }
+
+  // An empty field is what is not known.
+  double number_or(std::optional<std::size_t> column, double otherwise) {
+    return column && !csv_.field(*column).empty() ? csv_.number(*column) : otherwise;
   }
 
   void take_claim(const std::string& text) {
@@ -149,9 +195,12 @@ class FileReader {
     file_.claim = matrix::weaker(file_.claim, *claim);
   }
 
+  static constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
   text::CsvTable csv_;
   SolutionFile file_;
   std::size_t patch_ = 0, channel_ = 0, value_ = 0, lower_ = 0, upper_ = 0, claim_ = 0;
+  std::optional<std::size_t> irradiance_, irradiance_lower_, irradiance_upper_, area_, variation_;
 };
 
 }  // namespace

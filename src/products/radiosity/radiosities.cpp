@@ -1,4 +1,5 @@
 // The radiosities of all patches, from a solution or from its file.
+#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -46,13 +47,35 @@ void require_scene(const Scene& scene, const SolutionFile& file) {
 }
 
 // Of a patch of which no more radiosities are wanted.
-std::string what_is_wrong_with(const std::string& patch, const Radiosities& all, const Scene& scene) {
+std::string what_is_wrong_with(const std::string& patch, const std::vector<Selection>& patches, const Scene& scene) {
   const std::string name = text::in_quotes(patch, text::kShownName);
   const auto has_name = [&](const Selection& one) { return scene.name_of(one) == patch; };
-  if (std::ranges::any_of(all.patches, has_name)) return "has a radiosity of " + name + " twice in one channel";
+  if (std::ranges::any_of(patches, has_name)) return "has a radiosity of " + name + " twice in one channel";
   const auto is_it = [&](const Patch& one) { return one.name == patch; };
   const bool exists = std::ranges::any_of(scene.patches(), is_it);
   return "has a radiosity of " + name + (exists ? ", which has no area" : ", which is no patch of the scene");
+}
+
+// The rows of each channel of these patches, in their order.
+using RowsOfChannels = std::array<std::vector<const SolutionFile::Row*>, kColours.size()>;
+
+RowsOfChannels rows_of(const Scene& scene, const std::vector<Selection>& patches, const SolutionFile& file) {
+  RowsOfChannels rows;
+  std::map<std::pair<std::string, std::size_t>, std::size_t> wanted;  // a channel of a patch
+  for (std::size_t c = 0; c < rows.size(); ++c) {
+    rows[c].resize(patches.size());
+    for (std::size_t i = 0; i < patches.size(); ++i) wanted.emplace(std::pair(scene.name_of(patches[i]), c), i);
+  }
+  for (const SolutionFile::Row& row : file.rows) {
+    const auto found = wanted.find({row.patch, row.channel});
+    if (found == wanted.end()) refuse_row(file, what_is_wrong_with(row.patch, patches, scene));
+    rows[row.channel][found->second] = &row;
+    wanted.erase(found);
+  }
+  if (wanted.empty()) return rows;
+  const auto& [patch, channel] = wanted.begin()->first;
+  refuse_row(file, "has no radiosity of " + text::in_quotes(patch, text::kShownName) + " in " +
+                       std::string(kChannelNames[channel]));
 }
 
 }  // namespace
@@ -73,23 +96,38 @@ Radiosities radiosities_of(const Scene& scene, const SolutionFile& file) {
   Radiosities all = of_patches(patches_of(scene));
   all.name = std::filesystem::path(file.file).filename().string();
   all.claim = file.claim;
-  std::map<std::pair<std::string, std::size_t>, std::size_t> wanted;  // a channel of a patch
-  for (std::size_t i = 0; i < all.patches.size(); ++i) {
-    for (std::size_t c = 0; c < kColours.size(); ++c) wanted.emplace(std::pair(scene.name_of(all.patches[i]), c), i);
-  }
-  for (const SolutionFile::Row& row : file.rows) {
-    const auto found = wanted.find({row.patch, row.channel});
-    if (found == wanted.end()) refuse_row(file, what_is_wrong_with(row.patch, all, scene));
-    if (std::isinf(row.radiosity.upper)) refuse_unbounded(file.file, row.channel);
-    set(all, found->second, row.channel, row.radiosity);
-    wanted.erase(found);
-  }
-  if (!wanted.empty()) {
-    const auto& [patch, channel] = wanted.begin()->first;
-    refuse_row(file, "has no radiosity of " + text::in_quotes(patch, text::kShownName) + " in " +
-                         std::string(kChannelNames[channel]));
+  const RowsOfChannels rows = rows_of(scene, all.patches, file);
+  for (std::size_t c = 0; c < rows.size(); ++c) {
+    for (std::size_t i = 0; i < all.patches.size(); ++i) {
+      if (std::isinf(rows[c][i]->radiosity.upper)) refuse_unbounded(file.file, c);
+      set(all, i, c, rows[c][i]->radiosity);
+    }
   }
   return all;
+}
+
+Solution solution_of(const Scene& scene, const SolutionFile& file) {
+  const kernel::StandardArithmetic arithmetic;
+  require_scene(scene, file);
+  Solution solution;
+  solution.patches = patches_of(scene);
+  solution.claim = file.claim;
+  solution.wide = file.wide;
+  solution.width = file.width;
+  const RowsOfChannels rows = rows_of(scene, solution.patches, file);
+  for (const SolutionFile::Row* row : rows.front()) solution.areas.push_back(row->area);
+  for (std::size_t c = 0; c < rows.size(); ++c) {
+    Channel& channel = solution.channels[c];
+    for (const SolutionFile::Row* row : rows[c]) {
+      channel.radiosity.push_back(row->radiosity);
+      channel.irradiance.push_back(row->irradiance);
+      channel.variation.push_back(row->variation);
+      if (!std::isinf(row->radiosity.upper)) continue;
+      channel.no_bound = "the file does not say why";
+      channel.remedy = "compute it again to see why";
+    }
+  }
+  return solution;
 }
 
 }  // namespace exactff::radiosity

@@ -172,6 +172,8 @@ void set_colours(const Scene& scene, const std::vector<Selection>& patches, doub
 
 void set_claims(const matrix::Matrix& matrix, Solution& solution) {
   for (const ViewFactor& f : matrix.factors.entries) solution.claim = matrix::weaker(solution.claim, f.claim);
+  const auto is_wide = [](const ViewFactor& f) { return !f.accurate; };
+  solution.wide = static_cast<std::size_t>(std::ranges::count_if(matrix.factors.entries, is_wide));
   solution.claim_of_balance = solution.claim;
   for (const auto* column : {&matrix.back, &matrix.open}) {
     for (const ViewFactor& f : *column) {

@@ -36,7 +36,8 @@ TEST_F(HostileProgram, AMatrixNeedsLittleMemoryWhateverLiesBetween) {
     const Running run =
         start({"matrix", scene, "--from", "floor", "--to", "source", "--budget", "30", "--threads", "1", "--plain"},
               [] { limit(RLIMIT_AS, 400 << 20); });
-    EXPECT_EQ(run.wait(), 0) << scene << '\n' << run.error();
+    const int code = run.wait();
+    EXPECT_TRUE(code == 0 || code == 3) << scene << '\n' << run.error();  // 3: wider than asked
   }
 }
 

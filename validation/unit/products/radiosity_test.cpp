@@ -519,8 +519,36 @@ TEST_F(RadiosityCommand, KeepsViewFactorsOnlyUntilItIsDone) {
   EXPECT_EQ(validation::text_of(file("s.csv")), run(scene, {"--csv"}).output);
   EXPECT_FALSE(std::filesystem::exists(file("s.csv.factors")));
   EXPECT_FALSE(std::filesystem::exists(file("s.csv.factors.part")));
-  EXPECT_EQ(run(scene, {"-o", file("s.csv"), "--resume"}).exit_code, 2) << "it is done";
   EXPECT_EQ(run(scene, {"--resume"}).exit_code, 2);
+}
+
+TEST_F(RadiosityCommand, KeepsACompleteFileAndMakesWhatIsMissingBesideIt) {
+  const std::string scene = write(three_plates());
+  const std::vector<std::string> wide = {"--budget", "1", "-o", file("s.csv")};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), wide.begin(), wide.end());
+    return run(scene, more);
+  };
+  EXPECT_EQ(with({"--vtk", file("first.vtp")}).exit_code, 3) << "view factors are wider than 1e-3";
+  const std::string first = validation::text_of(file("s.csv"));
+  EXPECT_NE(first.find(" wider than that\n"), std::string::npos) << first;
+  EXPECT_EQ(with({"--resume", "--vtk", file("again.vtp")}).exit_code, 3);
+  EXPECT_EQ(validation::text_of(file("again.vtp")), validation::text_of(file("first.vtp")));
+  EXPECT_EQ(with({"--resume", "--plain"}).output, run(scene, {"--budget", "1", "--plain"}).output);
+  EXPECT_EQ(with({"--resume", "--csv"}).output, first);
+  EXPECT_NE(with({"--resume"}).output.find("irradiance"), std::string::npos);
+  for (const std::vector<std::string>& other : {std::vector<std::string>{"--resume", "--json"},
+                                                {"--resume", "--width", "1"},
+                                                {"--resume", "--certify"},
+                                                {"--resume", "--two-sided", "all"},
+                                                {"--resume", "--force"},
+                                                {}}) {
+    EXPECT_EQ(with(other).exit_code, 2) << testing::PrintToString(other);
+  }
+  EXPECT_EQ(run(scene, {"--budget", "2", "-o", file("s.csv"), "--resume"}).exit_code, 2);
+  EXPECT_EQ(validation::text_of(file("s.csv")), first);
+  EXPECT_EQ(with({"--force"}).exit_code, 3);
+  EXPECT_EQ(validation::text_of(file("s.csv")), first);
 }
 
 TEST_F(RadiosityCommand, ContinuesAfterAnInterruption) {
@@ -563,7 +591,7 @@ TEST_F(RadiosityCommand, MakesBoundsOfAWidthOrSaysHowWideTheyAre) {
   EXPECT_FALSE(std::filesystem::exists(file("w.csv.factors")));
   const validation::RunningProgram wide(EXACTFF_PROGRAM, {"radiosity", scene, "--width", "1e-6", "--budget", "4"},
                                         folder_.path() / "stderr");
-  EXPECT_EQ(wide.wait(), 0);
+  EXPECT_EQ(wide.wait(), 3);
   EXPECT_NE(wide.error().find("of the brightest radiosity wide, the widest of all, and not 1e-06"), std::string::npos)
       << wide.error();
   EXPECT_EQ(command({"--width", "0"}).exit_code, 2);
