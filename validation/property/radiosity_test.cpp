@@ -230,9 +230,12 @@ Vector exact_radiosities(const Scene& scene, const matrix::Matrix& matrix, doubl
   for (std::size_t i = 0; i < n; ++i) {
     const Material& m = scene.material(scene.face(scene.faces_of(all.from[i]).front()).material);
     e[i] = to_rational(m.radiosity.*colour);
+    const double buried = matrix.buried.empty() ? 0.0 : matrix.buried[i].value;
+    const Rational times =
+        buried < 1.0 ? Rational(1 / (1 - to_rational(buried))) : Rational(0);  // over what is exposed
     for (std::size_t j = 0; j < n; ++j) {
       const Rational low = to_rational(all.at(i, j).lower), high = to_rational(all.at(i, j).upper);
-      a[i][j] = (i == j ? 1 : 0) - to_rational(m.reflectance.*colour) * (low + to_rational(t) * (high - low));
+      a[i][j] = (i == j ? 1 : 0) - times * to_rational(m.reflectance.*colour) * (low + to_rational(t) * (high - low));
     }
   }
   return *solved(std::move(a), std::move(e));

@@ -51,6 +51,7 @@ Scene with_only(const Scene& scene, const std::vector<std::uint32_t>& pieces) {
 // A box beside the receiver: flat, a point, or as large as the distance to what is seen. Returns how many pieces its
 // points do not see.
 std::size_t expect_the_same_views(const Scene& scene, const Receiver& receiver, Random& random) {
+  if (some_is_buried(scene)) return 0;  // a solid without some faces buries nothing
   const Vec3 low = receiver.point;
   const double size = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), 1.0});
   const auto wide = [&] { return random.one_in(3) ? 0.0 : std::ldexp(size, -random.integer(0, 6)); };

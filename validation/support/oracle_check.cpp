@@ -89,9 +89,15 @@ OracleResult ask_oracle(const PlainScene& plain) {
   return oracle(scene, receiver_in(scene, plain), scene.select(plain.source));
 }
 
+// The oracle knows no solids, so it does not judge scenes in which something is buried (property/contacts_test.cpp
+// does); there, the engines must agree.
 std::string disagreement(const Scene& scene, const Receiver& receiver, const Selection& selection) {
-  const OracleResult truth = oracle(scene, receiver, selection);
   const ExactSource source(scene, selection);
+  if (some_is_buried(scene)) {
+    (void)exact_form_factor(scene, receiver, source, {.engine = Engine::kBoth, .exact_fraction = true});
+    return {};
+  }
+  const OracleResult truth = oracle(scene, receiver, selection);
   for (const Engine engine : {Engine::kEdges, Engine::kBoolean}) {
     const FormFactor result = exact_form_factor(scene, receiver, source, {.engine = engine, .exact_fraction = true});
     const std::string wrong = disagreement(result, truth);

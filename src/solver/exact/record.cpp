@@ -35,14 +35,9 @@ std::string_view to_string(Engine engine) {
 }
 
 std::string_view to_string(Outcome outcome) {
-  constexpr std::string_view kNames[] = {"the receiver is buried",
-                                         "the receiver lies on it",
-                                         "behind",
-                                         "below the horizon",
-                                         "unoccluded",
-                                         "hidden by one occluder",
-                                         "partly hidden",
-                                         "hidden by the union of occluders"};
+  constexpr std::string_view kNames[] = {
+      "buried",     "the receiver lies on it", "behind",        "below the horizon",
+      "unoccluded", "hidden by one occluder",  "partly hidden", "hidden by the union of occluders"};
   return kNames[static_cast<std::size_t>(outcome)];
 }
 
@@ -58,7 +53,7 @@ using text::counted;
 StageNote cull_note(const PlaneRecord& plane) {
   switch (plane.outcome) {
     case Outcome::kBuried:
-      return {"cull", true, "the receiver is buried where a solid touches its face: it sees nothing"};
+      return {"cull", true, "a solid lies on the receiver's face there, or on the source: it contributes 0"};
     case Outcome::kReceiverFace:
       return {"cull", true, "the receiver lies on this face: it contributes 0"};
     case Outcome::kBehind:

@@ -86,16 +86,22 @@ Outcome BooleanWalk::find_outcome() {
   if (request_.list_cutters) list_cutters();
   result_.record.source_joined = clipped_.size() > 1;
   // 6. The boundary: of the source, if there are no candidates;
-  if (occluders_.empty()) {
+  if (occluders_.empty() && plane_.covers.empty()) {
     trace_source();
     return Outcome::kUnoccluded;
   }
   // else project and subtract,
   std::vector<Polygon2> shadows;
   for (const Occluder& occluder : occluders_) shadows.push_back(frame().to_polygon(occluder.ring));
+  for (const std::uint32_t cover : plane_.covers) {
+    Ring ring = ring_of(cover);
+    std::ranges::reverse(ring);  // x sees its back
+    shadows.push_back(frame().to_polygon(ring));
+  }
   loops_ = difference(clipped_polygons(), shadows);
   // and trace the loops of what is left.
   trace_loops();
+  if (occluders_.empty()) return loops_.empty() ? Outcome::kBuried : Outcome::kUnoccluded;
   return loops_.empty() ? Outcome::kHiddenByUnion : Outcome::kPartlyHidden;
 }
 
@@ -175,12 +181,6 @@ bool BooleanWalk::gather_occluders() {
     occluder = {};
     return !hidden;
   });
-  for (const std::uint32_t cover : plane_.covers) {
-    if (hidden) break;
-    ++record.candidates;
-    occluders_.push_back({view_.scene.pieces()[cover].face, ring_of(cover)});
-    std::ranges::reverse(occluders_.back().ring);  // x sees its back
-  }
   return !hidden;
 }
 

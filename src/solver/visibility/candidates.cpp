@@ -32,20 +32,16 @@ std::optional<PanelId> Candidates::gather(std::uint64_t most) {
       return !alone && !too_many_;
     });
   }
-  return alone ? alone : add_covers();
+  return alone;
 }
 
-// What buries parts of the source lies in its plane, hides them, and nothing else. A cover that hides all is returned.
-std::optional<PanelId> Candidates::add_covers() {
+void Candidates::add_covers() {
   for (const std::uint32_t cover : query_.plane.covers) {
     clip_.take(query_.view.scene.corners(query_.view.scene.pieces()[cover]));
-    ++record_.candidates;
     constexpr int kShowsItsBack = 1;
-    const OutlineId outline = clip_.add_occluder(false, kShowsItsBack);
+    (void)clip_.add_occluder(false, kShowsItsBack);
     search_.outline_panels.push_back(cover);
-    if (search_.edges.hides_all(outline, source_count_)) return cover;
   }
-  return std::nullopt;
 }
 
 std::optional<PanelId> Candidates::one_that_hides_all() {

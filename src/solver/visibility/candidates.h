@@ -37,13 +37,14 @@ class Candidates {
   // after more than `most` candidates: see too_many().
   [[nodiscard]] std::optional<PanelId> gather(std::uint64_t most = kAny);
   [[nodiscard]] bool too_many() const { return too_many_; }
+  // Adds the outlines of what buries parts of the source. They lie in its plane, and are no candidates.
+  void add_covers();
   // A panel that hides all, if there is one. Looks only at those that may. Adds outlines. Requires culling.
   [[nodiscard]] std::optional<PanelId> one_that_hides_all();
 
  private:
   void start();
   [[nodiscard]] bool visit(PanelId panel, bool inside);
-  [[nodiscard]] std::optional<PanelId> add_covers();
 
   const PlaneQuery& query_;
   const Panels& panels_;

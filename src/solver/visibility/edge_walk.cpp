@@ -71,14 +71,15 @@ std::optional<Outcome> EdgeWalk::find_outcome() {
     alone = candidates.gather();
   }
   if (alone) return hidden_by_panel(*alone);
+  candidates.add_covers();
   // 5. Try a few occluders.
   const bool hidden = hidden_by_few(query_, source_.count, work_);
   // 6. Cut the edges.
   if (!hidden && !edges_.find(source_.count)) return std::nullopt;
   result_.boundary = VisibleBoundary(edges_);
   note_edges(edges_);
-  if (record.candidates == 0) return Outcome::kUnoccluded;
-  if (!result_.boundary.empty()) return Outcome::kPartlyHidden;
+  if (!result_.boundary.empty()) return record.candidates == 0 ? Outcome::kUnoccluded : Outcome::kPartlyHidden;
+  if (record.candidates == 0) return Outcome::kBuried;
   record.cover = hidden ? edges_.cover().size() : record.candidates;
   return Outcome::kHiddenByUnion;
 }
@@ -132,7 +133,8 @@ void EdgeWalk::note_edges(const EdgeCovers& found) {
 
 Rational EdgeWalk::fraction() {
   if (result_.boundary.empty()) return 0;
-  if (result_.record.outcome == Outcome::kUnoccluded && !source_.is_cut && !source_.lacks_pieces) return 1;
+  const bool is_whole = !source_.is_cut && !source_.lacks_pieces && query_.plane.covers.empty();
+  if (result_.record.outcome == Outcome::kUnoccluded && is_whole) return 1;
   Outlines& outlines = *outlines_;
   std::vector<Ring> source;
   for (OutlineId o = 0; o < source_.count; ++o) {
