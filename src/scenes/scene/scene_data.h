@@ -13,6 +13,7 @@
 #include "scene/edges.h"
 #include "scene/extent.h"
 #include "scene/panels.h"
+#include "scene/planes.h"
 #include "scene/shaft_tree.h"
 
 namespace exactff {
@@ -33,6 +34,8 @@ struct Scene::Data {
 
   mutable std::once_flag places_found;  // see places()
   mutable std::vector<std::uint32_t> places;
+  mutable std::once_flag planes_found;  // see planes()
+  mutable Planes planes;
   mutable std::once_flag tree_built;  // the tree is built at first use: see shaft_tree()
   mutable ShaftTree tree;
   mutable std::once_flag panels_found;  // see panels()

@@ -6,42 +6,15 @@
 #include <tuple>
 #include <utility>
 
-#include "kernel/exact_vec.h"
-#include "kernel/numbers.h"
 #include "kernel/vec.h"
+#include "scene/planes.h"
 
 namespace exactff::visibility {
 namespace {
 
 using kernel::coordinate;
-using kernel::ExactVec3;
-using kernel::Integer;
 
 constexpr std::size_t kMostLines = 128;  // of a wall; others count piece by piece
-
-// Equal for pieces in one plane, whichever way they face: a primitive normal n and n . p = number * 2^exponent.
-using PlaneKey = std::tuple<Integer, Integer, Integer, Integer, long>;
-
-PlaneKey plane_of(const Scene& scene, const Piece& piece) {
-  const auto vertex = [&](int i) -> const Vec3& { return scene.vertices()[piece.frame[i]]; };
-  const kernel::ScaledVec3 u = kernel::exact_difference(vertex(1), vertex(0));
-  const kernel::ScaledVec3 v = kernel::exact_difference(vertex(2), vertex(0));
-  ExactVec3 normal = cross(u.v, v.v);
-  kernel::make_primitive(normal);
-  const int first = kernel::sign(normal.x) != 0   ? kernel::sign(normal.x)
-                    : kernel::sign(normal.y) != 0 ? kernel::sign(normal.y)
-                                                  : kernel::sign(normal.z);
-  if (first < 0) kernel::negate(normal);
-  const kernel::ScaledVec3 p = kernel::exact_vector(vertex(0));
-  Integer number = dot(normal, p.v);
-  long exponent = 0;
-  if (number != 0) {
-    const auto zeros = mpz_scan1(number.get_mpz_t(), 0);
-    number >>= zeros;
-    exponent = p.exponent + static_cast<long>(zeros);
-  }
-  return {normal.x, normal.y, normal.z, number, exponent};
-}
 
 struct Edge {
   Vec3 from, to;
@@ -140,13 +113,13 @@ class WallMaker {
   }
 
   std::vector<Wall> run() {
-    std::map<PlaneKey, std::vector<std::uint32_t>> planes;
-    for (std::uint32_t p = 0; p < scene_.pieces().size(); ++p) {
-      const Piece& piece = scene_.pieces()[p];
-      if (!piece.transparent) planes[plane_of(scene_, piece)].push_back(p);
-    }
-    for (const auto& [key, pieces] : planes) {
-      if (!add(pieces)) {
+    const Planes& planes = exactff::planes(scene_);
+    for (std::uint32_t plane = 0; plane < planes.count(); ++plane) {
+      std::vector<std::uint32_t> pieces;
+      for (const std::uint32_t piece : planes.pieces_in(PlaneId{plane})) {
+        if (!scene_.pieces()[piece].transparent) pieces.push_back(piece);
+      }
+      if (!pieces.empty() && !add(pieces)) {
         for (const std::uint32_t piece : pieces) static_cast<void>(add({&piece, 1}));
       }
     }
