@@ -45,7 +45,7 @@ enum class ShaftCulling {
 // The result for one plane of the source. Processing stops as soon as this is known; the later stages are skipped.
 enum class Outcome {
   kBuried,         // the receiver, or all that it could see of the faces, is buried (scene.h)
-  kReceiverFace,   // the receiver was made on this face (Receiver::on)
+  kReceiverFace,   // the receiver lies in this plane, that of an own face (Receiver::on)
   kBehind,         // x is behind the faces or in their plane
   kBelowHorizon,   // no part lies above the receiver's horizon, the plane through x perpendicular to its normal
   kUnoccluded,     // no occluder in the shaft

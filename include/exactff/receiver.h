@@ -58,8 +58,16 @@ struct GridCell {
 };
 
 // A point with a normal of any non-zero length. `on` holds the receiver's own faces: those of one patch that it lies
-// on. They (all their pieces) neither occlude nor illuminate the point, because the rounded point lies slightly above
-// or below them. Its reflectance is that of the first. A receiver without own faces excludes nothing.
+// on. The receiver counts as lying in their planes, although its rounded point lies slightly above or below: no face
+// that lies exactly in the plane of an own face occludes or illuminates it, of whatever patch and whichever way it
+// faces.
+//
+// An own face that is not planar is its triangles. The receiver lies on the one whose area holds the point's
+// perpendicular projection onto its plane; of several on the one with the nearest plane, and of equals on the first. If
+// none holds it, the nearest plane decides. The other triangles occlude and illuminate, so values are those of the
+// scene with the triangles as faces, to the last bit.
+//
+// Its reflectance is that of the first own face. A receiver without own faces excludes nothing.
 struct Receiver {
   Vec3 point;
   Vec3 normal;
@@ -106,20 +114,28 @@ enum class Normals { kAgree, kAny };
 std::vector<std::size_t> place_on_faces(const Scene& scene, std::span<Receiver> receivers,
                                         std::optional<double> tolerance = {});
 
-// Receivers that were probably meant to lie on a face, and do not; and receivers that look away from the front of the
-// face that they lie on. A diagnosis, by find_faces with face_tolerance.
+// Receivers that were probably meant to lie on a face, and do not; receivers that look away from the front of the face
+// that they lie on; and those that lie behind another face. A diagnosis, by find_faces with face_tolerance.
 struct NearMisses {
-  std::size_t behind = 0;          // a face that then hides everything
-  std::size_t in_front = 0;        // of a face, which is then not their own
-  std::size_t turned = 0;          // their normals point away from the front of their own face
+  std::size_t behind = 0;    // a face that then hides everything
+  std::size_t in_front = 0;  // of a face, which is then not their own
+  std::size_t turned = 0;    // their normals point away from the front of their own face
+  // Behind a face that lies nearly, but not exactly, in the plane of their own face, and then hides everything.
+  std::size_t hidden = 0;
+  std::string mends_hidden = {};   // "--transparent NAME": the faces that hide them; empty if it would be long
   double furthest = 0.0;           // from the face, of those behind it and in front of it
   std::vector<std::string> first;  // a few of them in words, those behind a face first: "'7', 3.1e-07 behind 'floor:2'"
 
-  [[nodiscard]] bool none() const { return behind + in_front + turned == 0; }
+  [[nodiscard]] bool none() const { return behind + in_front + turned + hidden == 0; }
 };
 [[nodiscard]] NearMisses near_misses(const Scene& scene, std::span<const Receiver> receivers);
-// What the near misses are, what follows, and what to do; one sentence each.
-[[nodiscard]] std::vector<std::string> sentences(const NearMisses& misses, std::size_t receivers);
+// What the near misses are, what follows, and what to do; one sentence each. `noun`: what the receivers are called.
+[[nodiscard]] std::vector<std::string> sentences(const NearMisses& misses, std::size_t receivers,
+                                                 std::string_view noun = "receiver");
+
+// The middle of each piece of the faces, and a point near each of its corners, with the normal of the piece. Computed
+// in doubles. No ids.
+[[nodiscard]] std::vector<Receiver> probe_receivers(const Scene& scene, std::span<const FaceId> on);
 
 // The largest number of receivers that a generator makes; a larger one is most likely a mistake. Beyond it they throw
 // InputError.
@@ -141,9 +157,9 @@ enum class GridIds { kCells, kUnique };
 // face_tolerance. So one floor gives the same receivers, however it is cut into faces: to the last bit if it is exactly
 // planar and begins at the same corner, else to rounding.
 //
-// A lone face that is not planar keeps its centres: those of a quadrilateral lie on a curved patch through all four
-// corners, those of a rectangle in the plane through the mean of the vertices. They may lie off its triangles; the
-// receiver stores the face all the same. Throws InputError if a count is below 1 or there are too many cells.
+// On a face that is not planar, too, each centre is put on the triangle under it, whose normal the receiver has. Where
+// rounding leaves it behind another triangle of the face, beside a fold, it is moved to the front by a few roundings.
+// Throws InputError if a count is below 1 or there are too many cells.
 [[nodiscard]] std::vector<Receiver> grid_receivers(const Scene& scene, std::span<const Region> on, GridSize size,
                                                    GridIds ids = GridIds::kCells);
 // A grid on each region of a patch, or on the selected face alone.
@@ -153,7 +169,8 @@ enum class GridIds { kCells, kUnique };
                                                    GridIds ids = GridIds::kCells);
 
 // The following functions make receivers on distinct faces; faces without area get none. Each receiver stores its face
-// and has the face's Newell vector as its normal, and no two have the same id. The same call gives the same bits on
+// and has the face's Newell vector as its normal, on a face that is not planar that of its triangle. No two have the
+// same id. The same call gives the same bits on
 // every machine.
 
 // One receiver exactly at each corner of each face, so that a vertex where faces meet has one receiver with each of
@@ -165,9 +182,8 @@ enum class GridIds { kCells, kUnique };
 // One receiver in the middle of each region, with the id "NAME:k" of its first face. It lies at the mean of the corners
 // of the outline if that is convex; otherwise at the centroid of the area; and if that is not strictly inside the
 // outline, at the mean of the corners of the largest convex piece. Decided exactly, computed rationally and rounded
-// once. On a region of several faces it is put on the face under it, as by grid_receivers. A lone face that is not
-// planar is treated as seen along its Newell vector; the point may lie off its triangles, and the receiver stores the
-// face all the same.
+// once. On a region of several faces, and on a face that is not planar, it is put on the face under it, as by
+// grid_receivers.
 [[nodiscard]] std::vector<Receiver> centre_receivers(const Scene& scene, std::span<const Region> on);
 // One receiver in the middle of each face.
 [[nodiscard]] std::vector<Receiver> centre_receivers(const Scene& scene, std::span<const FaceId> on);

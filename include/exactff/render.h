@@ -132,8 +132,8 @@ struct Hit {
 // call from several threads.
 [[nodiscard]] std::optional<Hit> first_hit(const Scene& scene, const Ray& ray);
 
-// The receiver at the point of a hit, as receivers made on a face are: with the face's Newell vector as its normal,
-// turned if the back was met, and with the face and its neighbours in the same surface as its own faces.
+// The receiver at the point of a hit, as receivers made on a face are (grid_receivers): with the face's Newell vector
+// as its normal, turned if the back was met, and with the face and its neighbours in the same surface as its own faces.
 [[nodiscard]] Receiver receiver_at(const Scene& scene, const Hit& hit);
 
 // ----------------------------------------------------------------------------------------------------------- picture

@@ -34,17 +34,6 @@ bool lie_in_one_plane(const Scene& scene, FaceId a, FaceId b) {
   });
 }
 
-// A face in the plane of the point's face is its own as well: rounding may have moved the point to the other side of
-// it.
-void add_coplanar_faces(const Scene& scene, Receiver& receiver) {
-  const FaceId own = receiver.on.front();
-  for (std::size_t f = 0; f < scene.faces().size(); ++f) {
-    const auto face = static_cast<FaceId>(f);
-    if (face == own || scene.pieces_of(face).empty() || !lie_in_one_plane(scene, own, face)) continue;
-    receiver.on.push_back(face);
-  }
-}
-
 // Overlapping faces of one plane would weigh twice in a sample.
 bool has_coplanar_faces(const Scene& scene, const Selection& patch) {
   const auto& faces = scene.faces_of(patch);
@@ -81,8 +70,7 @@ Mean mean_of_second_opinion(const Scene& scene, const Selection& from, const Sel
                             std::uint64_t seed) {
   std::vector<double> values;
   std::uint64_t seeing = 0, shadowed = 0;
-  for (Receiver& receiver : sample_receivers(scene, scene.faces_of(from), count, seed)) {
-    add_coplanar_faces(scene, receiver);
+  for (const Receiver& receiver : sample_receivers(scene, scene.faces_of(from), count, seed)) {
     const OracleResult f = oracle(scene, receiver, to);
     values.push_back(f.value);
     seeing += f.zero ? 0U : 1U;
@@ -98,10 +86,9 @@ Mean mean_of_plain_points(const Scene& scene, FaceId from, const Selection& to, 
   const PlainFactor plain(scene, from, to), open(scene, from, to, PlainFactor::Occluders::kNone);
   std::vector<double> values;
   std::uint64_t seeing = 0, shadowed = 0;
-  for (Receiver& receiver : sample_receivers(scene, {&from, 1}, count, seed)) {
+  for (const Receiver& receiver : sample_receivers(scene, {&from, 1}, count, seed)) {
     const double value = plain.at(receiver.point);
     if (values.size() % kJudged == 0) {
-      add_coplanar_faces(scene, receiver);
       EXPECT_NEAR(value, oracle(scene, receiver, to).value, 1e-7) << seed;
     }
     values.push_back(value);

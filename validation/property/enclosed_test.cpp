@@ -16,7 +16,6 @@
 #include "property/closed_rooms.h"
 #include "support/random_scenes.h"
 #include "view_factors/pairs.h"
-#include "view_factors/patch_parts.h"
 
 namespace exactff::validation::enclosed_patches {
 namespace {
@@ -209,12 +208,12 @@ struct BackCounts {
   std::size_t proved = 0, seen = 0;
 };
 
-// Where a row is proved to see no back, no point does. One on a bent face may see through a part of it.
+// Where a row is proved to see no back, no point does.
 void judge_backs(const Scene& scene, const std::string& where, BackCounts& counts) {
   constexpr double kRounding = 1e-9;
   std::vector<Selection> rows;
   for (const Selection& patch : all_of(scene)) {
-    if (!scene.faces_of(patch).empty() && view_factors::is_planar(scene, patch)) rows.push_back(patch);
+    if (!scene.faces_of(patch).empty()) rows.push_back(patch);
   }
   std::vector<ViewFactor> backs;
   try {

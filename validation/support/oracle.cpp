@@ -13,7 +13,9 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
+#include <utility>
 
 #include "support/oracle_faces.h"
 #include "support/oracle_sum.h"
@@ -181,13 +183,12 @@ void hide(Fragments& fragments, const Polygon& occluder) {
   keep(fragments, false);
 }
 
-// The polygons of the source, gathered by oriented plane, and every polygon of the scene. Corners are relative to the
-// receiver.
+// The polygons of the source, gathered by oriented plane, and every polygon of the scene that may hide something.
+// Corners are relative to the receiver.
 struct Setting {
   std::vector<std::vector<Polygon>> planes;
   std::vector<Polygon> occluders;
-  std::vector<FaceId> on;  // the faces that the receiver lies on
-  Vector normal;           // of the receiver
+  Vector normal;  // of the receiver
 };
 
 // Any origin outside the plane is possible.
@@ -199,21 +200,66 @@ Rational whole_area(std::vector<Polygon> faces, int axis) {
   return area_along(union_of(faces), axis);
 }
 
-bool is_own(const Setting& setting, const Polygon& polygon) {
-  return std::ranges::find(setting.on, polygon.face) != setting.on.end();
-}
-
 // Faces seen from behind or edge-on contribute nothing.
 Fragments visible_part(const Setting& setting, std::vector<Polygon> faces) {
-  std::erase_if(faces, [&](const Polygon& face) { return is_own(setting, face); });
+  std::erase_if(faces, [](const Polygon& face) { return face.own; });
   if (faces.empty() || sgn(faces.front().offset) >= 0) return {};
   Fragments visible = union_of(faces);
   toggle(visible, {{setting.normal, 0}});
   keep(visible, true);
-  for (const Polygon& polygon : setting.occluders) {
-    if (!is_own(setting, polygon)) hide(visible, polygon);
-  }
+  for (const Polygon& polygon : setting.occluders) hide(visible, polygon);
   return visible;
+}
+
+// --- The receiver's own plane ---
+
+bool holds_projection_of_origin(const Polygon& triangle) {
+  Vector foot = triangle.normal;
+  for (Rational& c : foot) c *= triangle.offset / dot(triangle.normal, triangle.normal);
+  const Corners& ring = triangle.rings.front();
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vector side = minus(ring[(i + 1) % ring.size()], ring[i]);
+    if (sgn(dot(cross(side, minus(foot, ring[i])), triangle.normal)) < 0) return false;
+  }
+  return true;
+}
+
+// The polygon of a face on which a receiver at the origin lies. A face that is not planar is its triangles.
+Polygon polygon_under_origin(std::vector<Polygon> polygons) {
+  std::vector<Polygon> holding;
+  std::ranges::copy_if(polygons, std::back_inserter(holding), holds_projection_of_origin);
+  if (polygons.size() > 1 && !holding.empty()) polygons = std::move(holding);
+  const auto squared_distance = [](const Polygon& p) -> Rational {
+    return p.offset * p.offset / dot(p.normal, p.normal);
+  };
+  return *std::ranges::min_element(polygons, {}, squared_distance);
+}
+
+bool lie_in_one_plane(const Polygon& p, const Polygon& q) {
+  return is_zero(cross(p.normal, q.normal)) && dot(p.normal, q.rings.front().front()) == p.offset;
+}
+
+std::vector<Polygon> own_planes(const Scene& scene, const Receiver& receiver) {
+  std::vector<Polygon> planes;
+  for (const FaceId face : receiver.on) {
+    if (auto polygons = polygons_of(scene, face, exact(receiver.point)); !polygons.empty()) {
+      planes.push_back(polygon_under_origin(std::move(polygons)));
+    }
+  }
+  return planes;
+}
+
+// For each face, which of its polygons lie in one of the planes.
+std::vector<std::vector<bool>> polygons_in(const std::vector<Polygon>& planes, const Scene& scene,
+                                           const Vector& origin) {
+  std::vector<std::vector<bool>> own(scene.faces().size());
+  for (std::size_t i = 0; i < own.size() && !planes.empty(); ++i) {
+    for (const Polygon& polygon : polygons_of(scene, FaceId{static_cast<std::uint32_t>(i)}, origin)) {
+      own[i].push_back(
+          std::ranges::any_of(planes, [&](const Polygon& plane) { return lie_in_one_plane(plane, polygon); }));
+    }
+  }
+  return own;
 }
 
 std::vector<FaceId> ids(const std::vector<Polygon>& faces) {
@@ -232,7 +278,7 @@ void add_to_plane(std::vector<std::vector<Polygon>>& planes, const Polygon& poly
 
 Setting make_setting(const Scene& scene, const Receiver& receiver, const Selection& source,
                      const OracleMovement& movement, const Rational& step) {
-  Setting setting{{}, {}, receiver.on, exact(receiver.normal)};
+  Setting setting{{}, {}, exact(receiver.normal)};
   Vector origin = exact(receiver.point), by = exact(movement.along);
   for (Rational& c : by) c *= step;
   if (!movement.place) origin = minus(origin, negative(by));
@@ -240,10 +286,15 @@ Setting make_setting(const Scene& scene, const Receiver& receiver, const Selecti
     return movement.place ? polygons_of(scene, id, origin, {*movement.place, by}) : polygons_of(scene, id, origin);
   };
   const std::vector<FaceId> chosen = scene.faces_of(source);
+  const std::vector<std::vector<bool>> own =
+      polygons_in(own_planes(scene, receiver), scene, exact(receiver.point));  // before the movement
   for (std::size_t i = 0; i < scene.faces().size(); ++i) {
     const FaceId id{static_cast<std::uint32_t>(i)};
-    for (const Polygon& polygon : polygons(id)) {
-      if (!scene.face(id).transparent) setting.occluders.push_back(polygon);
+    std::vector<Polygon> moved = polygons(id);
+    for (std::size_t k = 0; k < moved.size(); ++k) {
+      Polygon& polygon = moved[k];
+      polygon.own = !own[i].empty() && own[i][std::min(k, own[i].size() - 1)];
+      if (!scene.face(id).transparent && !polygon.own) setting.occluders.push_back(polygon);
       if (std::ranges::find(chosen, id) != chosen.end()) add_to_plane(setting.planes, polygon);
     }
   }
@@ -251,6 +302,20 @@ Setting make_setting(const Scene& scene, const Receiver& receiver, const Selecti
 }
 
 }  // namespace
+
+std::vector<bool> own_pieces(const Scene& scene, const Receiver& receiver) {
+  const Vector origin = exact(receiver.point);
+  const std::vector<Polygon> planes = own_planes(scene, receiver);
+  std::vector<bool> own;
+  for (const Piece& piece : scene.pieces()) {
+    own.push_back(std::ranges::any_of(planes, [&](const Polygon& plane) {
+      return std::ranges::all_of(piece.frame, [&](std::uint32_t v) {
+        return dot(plane.normal, minus(exact(scene.vertices()[v]), origin)) == plane.offset;
+      });
+    }));
+  }
+  return own;
+}
 
 OracleResult oracle(const Scene& scene, const Receiver& receiver, const Selection& source) {
   const Setting setting = make_setting(scene, receiver, source, {}, 0);

@@ -15,7 +15,7 @@ namespace exactff::validation {
 
 // One oriented plane of the source.
 struct OraclePlane {
-  std::vector<FaceId> faces;   // ascending; includes the face that the receiver lies on, which contributes nothing
+  std::vector<FaceId> faces;   // ascending; includes those in whose plane the receiver lies, which contribute nothing
   mpq_class visible_fraction;  // visible area / area of the union of the faces, exact
 };
 
@@ -28,6 +28,10 @@ struct OracleResult {
   double visible_fraction = 0.0;  // visible area / area of all planes, correctly rounded; 0 if there is none
   std::vector<OraclePlane> planes;
 };
+
+// For each piece of the scene, whether it lies in the plane of an own face of the receiver (Receiver::on) and so
+// neither hides nor illuminates it. Exact.
+[[nodiscard]] std::vector<bool> own_pieces(const Scene& scene, const Receiver& receiver);
 
 // Exact. The time grows with the number of fragments: intended for up to some dozens of occluders.
 [[nodiscard]] OracleResult oracle(const Scene& scene, const Receiver& receiver, const Selection& source);

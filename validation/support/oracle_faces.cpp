@@ -28,7 +28,7 @@ Vector newell(const Corners& ring) {
 Polygon polygon(FaceId face, std::vector<Corners> rings) {
   const Vector normal = newell(rings.front());
   const Rational offset = dot(normal, rings.front().front());
-  return {face, std::move(rings), normal, offset};
+  return {face, std::move(rings), normal, offset, false};
 }
 
 bool on_one_line(const Corners& ring) {

@@ -13,8 +13,9 @@ namespace exactff::validation {
 struct Polygon {
   FaceId face{};
   std::vector<Corners> rings;
-  Vector normal;    // Newell vector of the first ring
-  Rational offset;  // the plane is normal . y = offset
+  Vector normal;     // Newell vector of the first ring
+  Rational offset;   // the plane is normal . y = offset
+  bool own = false;  // it neither hides nor illuminates the receiver
 };
 
 // The face in coordinates relative to `origin`: one polygon; the triangles that the rule for non-planar faces gives; or

@@ -16,6 +16,7 @@
 #include "exactff/view.h"
 #include "kernel/exact_vec.h"
 #include "scene/coplanar.h"
+#include "support/oracle.h"
 #include "support/picture_areas.h"
 
 namespace exactff::validation {
@@ -122,9 +123,11 @@ std::string name_of_first(const Scene& scene, const render::Ray& ray) {
 }  // namespace
 
 std::set<std::string> expect_names_on_what_they_name(const Scene& scene, const Receiver& receiver, const Vec3& up) {
+  const std::vector<bool> is_own = own_pieces(scene, receiver);
   std::vector<Selection> own;
-  for (const FaceId face : receiver.on) {
-    own.push_back({.patch = scene.face(face).patch, .face = face, .scene = scene.id()});
+  for (std::size_t p = 0; p < is_own.size(); ++p) {
+    const FaceId face = scene.pieces()[p].face;
+    if (is_own[p]) own.push_back({.patch = scene.face(face).patch, .face = face, .scene = scene.id()});
   }
   const Scene others = scene.with_transparent(own);
   std::set<std::string> found;

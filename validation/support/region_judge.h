@@ -15,7 +15,7 @@ void expect_picture_of_shares(const Scene& scene, const Receiver& receiver);
 
 // In both projections, with `up` upwards, a name that is written into the picture covers what it names: rays through
 // the middles of squares of 4 pixels in its box meet this patch first (render.h). Returns the names in both
-// pictures.
+// pictures. Requires that own faces are planar.
 std::set<std::string> expect_names_on_what_they_name(const Scene& scene, const Receiver& receiver, const Vec3& up);
 
 // The shares of the regions, front and back, are the rational numbers that CGAL's Booleans find for each face on its

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernel/exact_vec.h"
+#include "support/oracle.h"
 #include "whole_view/view_edges.h"
 
 namespace exactff::validation {
@@ -99,11 +100,7 @@ void expect_shares_of_unions(const Scene& scene, const Receiver& receiver) {
     const SeenPatch* const patch = find_patch(by_patch, p);
     expect_meet(patch ? patch->share.enclosure : Enclosure{}, of_patch[p], scene.patches()[p].name);
   }
-  Receiver on_both_sides = receiver;
-  for (const FaceId face : receiver.on) {
-    on_both_sides.on.push_back(static_cast<FaceId>(index_of(face) + count));
-  }
-  const Enclosure all = factor_of_first(joined(scene, count, true), on_both_sides);
+  const Enclosure all = factor_of_first(joined(scene, count, true), receiver);
   for (const WholeView* seen : {&by_face, &by_patch})
     expect_meet(seen->back.enclosure, difference(all, before), "back");
 }
@@ -128,8 +125,10 @@ struct Plane {
 
 std::vector<Plane> planes_of(const Scene& scene, const Receiver& receiver) {
   std::vector<Plane> result;
-  for (const Piece& piece : scene.pieces()) {
-    if (piece.transparent || std::ranges::find(receiver.on, piece.face) != receiver.on.end()) continue;
+  const std::vector<bool> own = own_pieces(scene, receiver);
+  for (std::size_t p = 0; p < scene.pieces().size(); ++p) {
+    const Piece& piece = scene.pieces()[p];
+    if (piece.transparent || own[p]) continue;
     std::vector<ExactVec3> corners;
     long exponent = 10000;
     const auto at = [&](std::uint32_t vertex) {

@@ -7,29 +7,10 @@
 #include "exactff/radiosity.h"
 #include "files/parallel.h"
 #include "kernel/float_environment.h"
-#include "kernel/vec.h"
 #include "radiosity/gather.h"
 
 namespace exactff::radiosity {
 namespace {
-
-// At a corner itself, walls that meet there would be seen edge-on, which is not what is seen a hair beside it.
-std::vector<Receiver> points_of(const Scene& scene, const Piece& piece) {
-  constexpr double kToCentre = 0.125;
-  const std::span<const std::uint32_t> corners = scene.corners(piece);
-  Vec3 centre;
-  for (const std::uint32_t v : corners) {
-    centre = kernel::along(centre, scene.vertices()[v], 1.0 / static_cast<double>(corners.size()));
-  }
-  std::vector<Vec3> points{centre};
-  for (const std::uint32_t v : corners) {
-    const Vec3& corner = scene.vertices()[v];
-    points.push_back(kernel::along(corner, kernel::difference(centre, corner), kToCentre));
-  }
-  std::vector<Receiver> receivers;
-  for (const Vec3& point : points) receivers.push_back({point, scene.face(piece.face).newell, {piece.face}, {}});
-  return receivers;
-}
 
 // Values of every patch; 0 where a channel has none.
 Radiosities values_of(const Solution& solution) {
@@ -51,14 +32,12 @@ Rgb largest_difference(const Scene& scene, const Gather& gather, const Selection
   for (const FaceId face : scene.faces_of(patch)) {
     const auto formula = whole_view::light_formula(scene, std::span(&face, 1), whole_view::FaceSide::kFront,
                                                    Quantity::kRadiosity, KeMeans::kRadiosity);
-    for (const Piece& piece : scene.pieces_of(face)) {
-      for (const Receiver& receiver : points_of(scene, piece)) {
-        if (buried_under(scene, receiver)) continue;
-        const auto channels = gather.at(receiver, formula, {}, GatherBounds::kNone, results);
-        for (std::size_t c = 0; c < kColours.size(); ++c) {
-          double& most = largest.*kColours[c];
-          most = std::max(most, std::abs(channels[c].value - value.*kColours[c]));
-        }
+    for (const Receiver& receiver : probe_receivers(scene, std::span(&face, 1))) {
+      if (buried_under(scene, receiver)) continue;
+      const auto channels = gather.at(receiver, formula, {}, GatherBounds::kNone, results);
+      for (std::size_t c = 0; c < kColours.size(); ++c) {
+        double& most = largest.*kColours[c];
+        most = std::max(most, std::abs(channels[c].value - value.*kColours[c]));
       }
     }
   }

@@ -275,12 +275,8 @@ std::optional<Hit> first_hit(const Scene& scene, const Ray& ray) {
 
 Receiver receiver_at(const Scene& scene, const Hit& hit) {
   const kernel::StandardArithmetic arithmetic;
-  const Vec3& front = scene.face(hit.face).newell;
-  Receiver receiver;
-  receiver.point = hit.point;
-  receiver.normal = hit.back ? Vec3{-front.x, -front.y, -front.z} : front;
-  receiver.on = own_faces(scene, hit.face, hit.point, tolerance_of_computed_points(scene));
-  return receiver;
+  return receiver_on(scene, hit.face, own_faces(scene, hit.face, hit.point, tolerance_of_computed_points(scene)),
+                     hit.point, hit.back ? Looks::kToBack : Looks::kToFront);
 }
 
 }  // namespace exactff::render

@@ -127,11 +127,11 @@ void Painter::add_layers(const Ray& ray, const Hit* hit, bool dark, Sample& samp
     return;
   }
   const Scene& scene = *job_.request().scene;
-  const Face& face = scene.face(hit->face);
-  const Vec3 front = unit_length(face.newell), normal = hit->back ? kernel::scaled(front, -1.0) : front;
-  numbers.insert(numbers.end(), {hit->point.x, hit->point.y, hit->point.z, normal.x, normal.y, normal.z,
-                                 kernel::distance(hit->point, ray.origin), static_cast<double>(index_of(hit->face) + 1),
-                                 static_cast<double>(index_of(face.patch) + 1)});
+  const Receiver receiver = receiver_at(scene, *hit);
+  const Vec3 &point = receiver.point, normal = unit_length(receiver.normal);
+  numbers.insert(numbers.end(), {point.x, point.y, point.z, normal.x, normal.y, normal.z,
+                                 kernel::distance(point, ray.origin), static_cast<double>(index_of(hit->face) + 1),
+                                 static_cast<double>(index_of(scene.face(hit->face).patch) + 1)});
 }
 
 }  // namespace exactff::render

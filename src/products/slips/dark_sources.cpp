@@ -8,6 +8,7 @@
 #include "exactff/slips.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
+#include "receivers/own_pieces.h"
 #include "scene/selections.h"
 #include "slips/findings.h"
 #include "slips/sight_lines.h"
@@ -79,12 +80,12 @@ class DarkSource {
   [[nodiscard]] std::vector<FaceId> faces_near(const Receiver& receiver) const {
     constexpr std::size_t kMost = 8;
     std::set<FaceId> near;
+    const OwnPieces own(scene_, receiver);
     const Vec3& x = receiver.point;
     const double tolerance = face_tolerance(scene_, x);
     visit_pieces_near(scene_, {x, x}, tolerance, [&](std::uint32_t piece) {
       const FaceId face = scene_.pieces()[piece].face;
-      const bool own = std::ranges::find(receiver.on, face) != receiver.on.end();
-      if (!own && is_near_plane(scene_.face(face), x, tolerance)) near.insert(face);
+      if (!own.contains(piece) && is_near_plane(scene_.face(face), x, tolerance)) near.insert(face);
       return near.size() < kMost;
     });
     return {near.begin(), near.end()};

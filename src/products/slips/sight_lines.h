@@ -63,15 +63,4 @@ class SightLines {
 // angle.
 [[nodiscard]] Vec3 ray_before(const Vec3& normal, int index);
 
-// The pieces whose bounding boxes come within `reach` of a box, until `visit` returns false.
-template <class Visit>
-void visit_pieces_near(const Scene& scene, const Box& box, double reach, const Visit& visit) {
-  const Vec3& low = box.low;
-  const HalfSpace beyond_low[] = {{{1, 0, 0}, -reach}, {{0, 1, 0}, -reach}, {{0, 0, 1}, -reach}};
-  const Vec3 size{box.high.x - low.x + reach, box.high.y - low.y + reach, box.high.z - low.z + reach};
-  const HalfSpace half_spaces[] = {beyond_low[0],         beyond_low[1],         beyond_low[2],
-                                   {{-1, 0, 0}, -size.x}, {{0, -1, 0}, -size.y}, {{0, 0, -1}, -size.z}};
-  shaft_tree(scene).query(low, half_spaces, visit);
-}
-
 }  // namespace exactff::slips

@@ -77,7 +77,7 @@ class Recursion {
     for (const SourceRoot& root : source.roots) {
       key = kernel::split_mix(key, 0);
       const SourcePlane& plane = source.planes[root.plane];
-      if (!view_.is_own(root.face) && !can_cull(plane)) sum += compute_root(root, plane, key);
+      if (!view_.is_own(root.piece) && !can_cull(plane)) sum += compute_root(root, plane, key);
     }
     return sum;
   }

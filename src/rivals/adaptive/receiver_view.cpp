@@ -63,7 +63,7 @@ class Gatherer {
   // The piece as x sees it, or null if it certainly hides nothing.
   const SeenPolygon* see(std::uint32_t index) {
     const Piece& piece = scene_.scene->pieces()[index];
-    if (piece.transparent || view_.is_own(piece.face)) return nullptr;
+    if (piece.transparent || view_.is_own(index)) return nullptr;
     if (std::binary_search(plane_.coplanar.begin(), plane_.coplanar.end(), index)) return nullptr;
     corners_ = scene_.scene->corners(piece);
     if (outside_slab()) return nullptr;
@@ -156,7 +156,7 @@ ReceiverView view_from(const Receiver& receiver, const ScaledScene& scene) {
                              "it has no horizon",
                              "give a normal of any other length"});
   }
-  ReceiverView view{receiver.point, receiver.point * scene.scale, {}, {}, {receiver.on.begin(), receiver.on.end()}};
+  ReceiverView view{receiver.point, receiver.point * scene.scale, {}, {}, {*scene.scene, receiver}};
   view.normal = receiver.normal * normalising_scale(max_norm(receiver.normal));
   view.unit_normal = view.normal * (1.0 / length(view.normal));
   return view;

@@ -1,8 +1,6 @@
 // One receiver's view of a scene: which planes face it, and which pieces may lie between it and a source.
 #pragma once
 
-#include <algorithm>
-#include <boost/container/small_vector.hpp>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -11,6 +9,7 @@
 #include "adaptive/shaft.h"
 #include "adaptive/source_roots.h"
 #include "exactff/adaptive.h"
+#include "receivers/own_pieces.h"
 #include "scene/shaft_tree.h"
 
 namespace exactff::adaptive {
@@ -34,9 +33,9 @@ struct ReceiverView {
   Vec3 point;        // scaled
   Vec3 normal;       // times a power of two
   Vec3 unit_normal;
-  boost::container::small_vector<FaceId, 4> on;  // as in Receiver
+  OwnPieces own;  // neither occlude nor illuminate
 
-  [[nodiscard]] bool is_own(FaceId face) const { return std::ranges::find(on, face) != on.end(); }
+  [[nodiscard]] bool is_own(std::uint32_t piece) const { return own.contains(piece); }
 };
 
 // Throws InputError if a coordinate is not finite or the normal is zero, std::invalid_argument if the scene has no such

@@ -5,7 +5,7 @@
 #include <unordered_map>
 
 #include "adaptive/plane_side.h"
-#include "kernel/exact_vec.h"
+#include "scene/planes.h"
 
 namespace exactff::adaptive {
 
@@ -53,7 +53,7 @@ class RootMaker {
   }
 
   void add_root(std::span<const std::uint32_t> corners, std::uint32_t plane, std::uint32_t piece) {
-    SourceRoot root{{}, static_cast<int>(corners.size()), plane, piece, scene_.pieces()[piece].face};
+    SourceRoot root{{}, static_cast<int>(corners.size()), plane, piece};
     std::transform(corners.begin(), corners.end(), root.corners.begin(), [&](std::uint32_t v) { return points_[v]; });
     result_.roots.push_back(root);
   }
@@ -74,21 +74,10 @@ class RootMaker {
       plane.frame[i] = points_[piece.frame[i]];
       plane.exact_frame[i] = scene_.vertices()[piece.frame[i]];
     }
-    const Normal normal = plane_normal(plane.frame[0], plane.frame[1], plane.frame[2]);
-    for (std::uint32_t k = 0; k < scene_.pieces().size(); ++k) {
-      if (coplanar(scene_.pieces()[k], plane, normal)) plane.coplanar.push_back(k);
-    }
+    const Planes& all = planes(scene_);
+    const auto coplanar = all.pieces_in(all.of_piece(index));
+    plane.coplanar.assign(coplanar.begin(), coplanar.end());
     return plane;
-  }
-
-  bool coplanar(const Piece& piece, const SourcePlane& plane, const Normal& normal) const {
-    return std::all_of(std::begin(piece.frame), std::end(piece.frame), [&](std::uint32_t v) {
-      const Bounded height = bounded_dot(normal, points_[v] - plane.frame[0]);
-      if (height.certainly_positive() || height.certainly_negative()) return false;
-      if (height.certainly_zero()) return true;
-      const std::array<Vec3, 3>& f = plane.exact_frame;
-      return kernel::orientation(f[0], f[1], f[2], scene_.vertices()[v]) == 0;
-    });
   }
 
   // Two faces in one plane may face opposite sides.

@@ -21,7 +21,6 @@ struct SourceRoot {
   int corner_count = 0;
   std::uint32_t plane = 0;
   std::uint32_t piece = 0;
-  FaceId face{};
 };
 
 struct SourceRoots {

@@ -164,7 +164,7 @@ void Hemicube::render(const ReceiverView& view) {
   const auto pieces = on_scene_.scene().pieces();
   front_.assign(pieces.size(), 0);
   for (std::uint32_t k = 0; k < pieces.size(); ++k) {
-    if (!pieces[k].transparent && !view.is_own(pieces[k].face)) draw(k, view);
+    if (!pieces[k].transparent && !view.is_own(k)) draw(k, view);
   }
 }
 
@@ -172,7 +172,7 @@ void Hemicube::draw_transparent_faces(const ReceiverView& view) {
   const auto pieces = on_scene_.scene().pieces();
   const ItemBuffer opaque = buffer_;
   for (std::uint32_t k = 0; k < pieces.size(); ++k) {
-    if (!pieces[k].transparent || view.is_own(pieces[k].face)) continue;
+    if (!pieces[k].transparent || view.is_own(k)) continue;
     draw(k, view);
     if (k + 1 < pieces.size() && pieces[k + 1].face == pieces[k].face) continue;
     add_up([&](std::uint32_t item) { return pieces[item].face == pieces[k].face; });

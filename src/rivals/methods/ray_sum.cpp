@@ -94,7 +94,7 @@ void RaySum::look_from(const Receiver& receiver) {
 bool RaySum::look_at(const RaySource& source, std::size_t index, Reach reach) {
   const SourceRoot& root = source.roots[index];
   const RayPlane& plane = source.planes[root.plane];
-  if (view_.is_own(root.face) || max_norm(view_.point) > kFarthest) return false;
+  if (view_.is_own(root.piece) || max_norm(view_.point) > kFarthest) return false;
   if (reach == Reach::kVisible && !in_front(view_, plane.front)) return false;
   polygon_.clear();
   for (int i = 0; i < root.corner_count; ++i) {
@@ -142,9 +142,9 @@ void RaySum::gather_from_all(const RayPlane& plane, const SourcePlane& seen, Hor
   pieces_.erase(std::unique(pieces_.begin(), pieces_.end()), pieces_.end());
   gather_blurred(scene_.scene, view_, seen, polygon_, horizon, pieces_, gathered_);
   pieces_.insert(pieces_.end(), seen.coplanar.begin(), seen.coplanar.end());
-  for (const FaceId own : view_.on) {
-    const Face& face = scene.face(own);
-    for (std::uint32_t k = 0; k < face.piece_count; ++k) pieces_.push_back(face.first_piece + k);
+  for (const PlaneId of_own : view_.own.planes()) {
+    const auto own = view_.own.pieces_in(of_own);
+    pieces_.insert(pieces_.end(), own.begin(), own.end());
   }
   blockers_.assign_all_but(scene.pieces().size(), pieces_);
 }

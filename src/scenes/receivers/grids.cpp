@@ -68,14 +68,12 @@ class RegionGrid {
   void append(std::vector<Receiver>& receivers, const std::array<Rational, 3>& at, const FaceFrame::Coordinate& a,
               const FaceFrame::Coordinate& b, const GridCell& cell) const {
     Receiver receiver;
-    if (lattice_->region.faces.size() == 1) {
+    if (is_one_planar_face(scene_, lattice_->region)) {
       receiver.point = plane().rounded(at);
       receiver.on = lattice_->region.faces;
       receiver.normal = scene_.face(receiver.on.front()).newell;
-    } else if (const auto foot = shape_.foot(at, a, b)) {
-      receiver.point = foot->point;
-      receiver.normal = scene_.face(foot->face).newell;
-      receiver.on = own_faces(scene_, foot->face, foot->point, tolerance_of_computed_points(scene_));
+    } else if (auto under = shape_.receiver_under(at, a, b)) {
+      receiver = std::move(*under);
     } else {
       return;
     }

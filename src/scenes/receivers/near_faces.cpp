@@ -12,6 +12,7 @@
 #include "kernel/exact_vec.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
+#include "receivers/own_pieces.h"
 #include "receivers/placing.h"
 #include "scene/extent.h"
 #include "scene/shaft_tree.h"
@@ -34,8 +35,18 @@ struct Nearby {
   FaceId face{};
   Vec3 normal;            // unit
   double height = 0.0;    // of the point above the plane of the piece
+  double beside = 0.0;    // distance of its foot from the piece
   double distance = 0.0;  // of the point from the piece
 };
+
+// Of a planar face the Newell vector, which is correctly rounded however thin the piece is.
+Vec3 normal_of(const Scene& scene, double scale, const Piece& piece) {
+  const Face& face = scene.face(piece.face);
+  if (face.shape == FaceShape::kPlanar) return unit_by_inverse(face.newell);
+  const auto frame = [&](std::size_t i) { return kernel::scaled(scene.vertices()[piece.frame[i]], scale); };
+  return unit_by_inverse(cross(unit_by_inverse(difference(frame(1), frame(0))),  //
+                               unit_by_inverse(difference(frame(2), frame(1)))));
+}
 
 class Search {
  public:
@@ -62,10 +73,10 @@ class Search {
     const auto corners = scene_.corners(piece);
     const auto corner = [&](std::size_t i) { return kernel::scaled(scene_.vertices()[corners[i]], scale_); };
     const auto frame = [&](std::size_t i) { return kernel::scaled(scene_.vertices()[piece.frame[i]], scale_); };
-    const Vec3 normal = normal_of(piece);
+    const Vec3 normal = normal_of(scene_, scale_, piece);
     const double height = dot(normal, difference(point_, frame(0)));
     if (!(std::abs(height) <= tolerance_)) return std::nullopt;
-    double beside = 0.0;  // distance of the foot from the piece
+    double beside = 0.0;
     bool inside = true;
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -76,16 +87,7 @@ class Search {
     }
     if (!inside) beside = std::sqrt(std::max(nearest * nearest - height * height, 0.0));
     if (!(beside <= tolerance_)) return std::nullopt;
-    return Nearby{index, piece.face, normal, height, std::hypot(height, beside)};
-  }
-
-  // Of a planar face the Newell vector, which is correctly rounded however thin the piece is.
-  [[nodiscard]] Vec3 normal_of(const Piece& piece) const {
-    const Face& face = scene_.face(piece.face);
-    if (face.shape == FaceShape::kPlanar) return unit_by_inverse(face.newell);
-    const auto frame = [&](std::size_t i) { return kernel::scaled(scene_.vertices()[piece.frame[i]], scale_); };
-    return unit_by_inverse(cross(unit_by_inverse(difference(frame(1), frame(0))),  //
-                                 unit_by_inverse(difference(frame(2), frame(1)))));
+    return Nearby{index, piece.face, normal, height, beside, std::hypot(height, beside)};
   }
 
   static double distance_from_side(const Vec3& side, const Vec3& to_point) {
@@ -182,6 +184,55 @@ NearFaces find_faces(const Scene& scene, const Receiver& receiver, double tolera
   if (best == nullptr) return {};
   return {own_faces(scene, search, *best), search.in_the_scenes_unit(std::abs(best->height)),
           side_of(scene, best->piece, receiver.point), std::get<0>(least)};
+}
+
+// --- Faces before a receiver ---------------------------------------------------------------------------------------
+
+std::vector<FaceId> HidingFaces::of(const Receiver& receiver) {
+  constexpr double kBlur = 0x1p-48;  // of the scene's largest coordinate
+  std::vector<FaceId> hiding;
+  if (std::ranges::none_of(receiver.on, [&](FaceId face) { return are_possible_on(face); })) return hiding;
+  const OwnPieces own(scene_, receiver);
+  const Search search(scene_, receiver.point, tolerance_of_computed_points(scene_));
+  const Vec3 normal = unit_by_inverse(receiver.normal);
+  for (const Nearby& near : search.found()) {
+    if (scene_.pieces()[near.piece].transparent || own.contains(near.piece)) continue;
+    const double cosine = dot(normal, near.normal);
+    if (std::abs(cosine) < kCosOfOneDegree || near.beside > std::abs(near.height) + kBlur) continue;
+    const int side = side_of(scene_, near.piece, receiver.point);
+    if (side != 0 && (side < 0) == (cosine > 0.0)) hiding.push_back(near.face);
+  }
+  return hiding;
+}
+
+// Whether another piece near the face lies nearly in the plane of one of its pieces.
+bool HidingFaces::are_possible_on(FaceId id) {
+  const auto [known, is_new] = possible_.try_emplace(id, false);
+  if (!is_new) return known->second;
+  const double scale = extent(scene_).scale, tolerance = tolerance_of_computed_points(scene_);
+  const auto at = [&](std::uint32_t vertex) { return kernel::scaled(scene_.vertices()[vertex], scale); };
+  for (std::uint32_t own = scene_.face(id).first_piece; own < scene_.face(id).first_piece + scene_.face(id).piece_count;
+       ++own) {
+    const Piece& piece = scene_.pieces()[own];
+    const Vec3 normal = normal_of(scene_, scale, piece), &origin = scene_.vertices()[piece.frame[0]];
+    Box box{origin, origin};
+    for (const std::uint32_t corner : scene_.corners(piece)) box.include(scene_.vertices()[corner]);
+    visit_pieces_near(scene_, box, tolerance, [&](std::uint32_t other) {
+      const Piece& near = scene_.pieces()[other];
+      if (near.transparent || planes(scene_).of_piece(other) == planes(scene_).of_piece(own)) return true;
+      if (std::abs(dot(normal, normal_of(scene_, scale, near))) < kCosOfOneDegree) return true;
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+      for (const std::uint32_t corner : scene_.corners(near)) {
+        const double height = dot(normal, difference(at(corner), kernel::scaled(origin, scale)));
+        low = std::min(low, height);
+        high = std::max(high, height);
+      }
+      known->second = low <= tolerance * scale && high >= -tolerance * scale;
+      return !known->second;
+    });
+    if (known->second) break;
+  }
+  return known->second;
 }
 
 }  // namespace exactff

@@ -6,6 +6,8 @@
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"
 #include "kernel/vec.h"
+#include "receivers/placing.h"
+#include "scene/selections.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 
@@ -48,11 +50,22 @@ NearMisses near_misses(const Scene& scene, std::span<const Receiver> receivers) 
   const auto tell = [&](std::size_t i, const std::string& what, std::vector<std::string>& list) {
     if (list.size() < kMostTold) list.push_back(name_of_receiver(receivers, i) + ", " + what);
   };
+  HidingFaces hiding(scene);
+  std::vector<FaceId> hiding_faces;
   kernel::Steps steps("faces of receivers", receivers.size());
   for (std::size_t i = 0; i < receivers.size(); ++i) {
     steps.take();
     const Receiver& receiver = receivers[i];
     if (!receiver.on.empty()) {
+      if (const std::vector<FaceId> before = hiding.of(receiver); !before.empty()) {
+        ++misses.hidden;
+        hiding_faces.insert(hiding_faces.end(), before.begin(), before.end());
+        const bool own = std::ranges::find(receiver.on, before.front()) != receiver.on.end();
+        tell(i,
+             "on '" + scene.name_of(receiver.on) + "', behind " +
+                 (own ? "another triangle of it" : "'" + scene.name_of(before.front()) + "'"),
+             worst);
+      }
       if (!looks_away_from(scene.face(receiver.on.front()), receiver.normal)) continue;
       ++misses.turned;
       tell(i, "turned against '" + scene.name_of(receiver.on) + "'", others);
@@ -69,15 +82,16 @@ NearMisses near_misses(const Scene& scene, std::span<const Receiver> receivers) 
              scene.name_of(near.faces.front()) + "'",
          behind ? worst : others);
   }
+  misses.mends_hidden = flag_words(scene, "--transparent", selections_of(scene, std::move(hiding_faces)));
   misses.first = std::move(worst);
   std::ranges::move(others, std::back_inserter(misses.first));
   if (misses.first.size() > kMostTold) misses.first.resize(kMostTold);
   return misses;
 }
 
-std::vector<std::string> sentences(const NearMisses& misses, std::size_t receivers) {
+std::vector<std::string> sentences(const NearMisses& misses, std::size_t receivers, std::string_view noun) {
   std::vector<std::string> told;
-  const std::string of_all = " of " + text::counted(receivers, "receiver");
+  const std::string of_all = " of " + text::counted(receivers, noun);
   if (misses.behind + misses.in_front > 0) {
     std::string sentence = std::to_string(misses.behind + misses.in_front) + of_all +
                            " are given without a face, within " + text::short_number(misses.furthest, 2) + " of one";
@@ -85,6 +99,12 @@ std::vector<std::string> sentences(const NearMisses& misses, std::size_t receive
       sentence += "; " + std::to_string(misses.behind) + " of them look through it from behind, so it hides everything";
     }
     told.push_back(sentence + "; --on auto places them on their faces");
+  }
+  if (misses.hidden > 0) {
+    told.push_back(std::to_string(misses.hidden) + of_all +
+                   " lie on a face, but behind another one that is nearly in its plane and hides everything; " +
+                   (misses.mends_hidden.empty() ? "--transparent NAME,NAME,..." : misses.mends_hidden) +
+                   " lets light pass through it");
   }
   if (misses.turned > 0) {
     told.push_back(std::to_string(misses.turned) + of_all +

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "kernel/vec.h"
+#include "receivers/placing.h"
 #include "scene/extent.h"
 #include "scene/places.h"
 
@@ -221,19 +222,21 @@ RegionShape::RegionShape(const Scene& scene, const Region& region)
 RegionShape::RegionShape(const Scene& scene, const Region& region, const std::vector<VertexRing>& outline)
     : points_(face_points(scene.vertices(), with_tiles(scene, region, outline))),
       outline_(first_rings(points_, outline.size()), scene.vertices()[points_.vertex.front()]),
-      frame_(outline_) {
+      frame_(outline_),
+      scene_(scene),
+      is_lone_(region.faces.size() == 1) {
   a_bits_ = longest(frame_.a());
   b_bits_ = longest(frame_.b());
   std::size_t ring = outline.size();
   for (const FaceId face : region.faces) {
-    for (std::size_t k = scene.pieces_of(face).size(); k > 0; --k) add_tile(face, ring++);
+    for (std::uint32_t k = 0; k < scene.face(face).piece_count; ++k) add_tile(scene.face(face).first_piece + k, ring++);
   }
   fill_bins();
 }
 
-void RegionShape::add_tile(FaceId face, std::size_t ring) {
+void RegionShape::add_tile(std::uint32_t piece, std::size_t ring) {
   const std::size_t first = points_.ring_start[ring], last = points_.ring_start[ring + 1];
-  Tile tile{face, points_.at[first], newell(points_, first, last), {}, {}, {}, {}};
+  Tile tile{piece, points_.at[first], newell(points_, first, last), {}, {}, {}, {}};
   if (sign(dot(tile.normal, outline_.normal())) <= 0) return;
   for (std::size_t i = first; i < last; ++i) {
     const ExactVec3& p = points_.at[i];
@@ -284,9 +287,9 @@ int RegionShape::side(const Tile& tile, std::size_t corner, const PlanePlace& pl
   return sign(Integer(along_a * to_b * place.a.denominator - along_b * to_a * place.b.denominator));
 }
 
-std::optional<RegionShape::Foot> RegionShape::foot(const std::array<Rational, 3>& offset,
-                                                   const FaceFrame::Coordinate& a,
-                                                   const FaceFrame::Coordinate& b) const {
+std::optional<Receiver> RegionShape::receiver_under(const std::array<Rational, 3>& offset,
+                                                    const FaceFrame::Coordinate& a,
+                                                    const FaceFrame::Coordinate& b) const {
   const PlanePlace place{a, b, as_double(a.numerator, a.denominator, a_bits_),
                          as_double(b.numerator, b.denominator, b_bits_)};
   for (const std::uint32_t t : tiles_in_bin_[bin_of(place.y) * bins_ + bin_of(place.x)]) {
@@ -295,7 +298,11 @@ std::optional<RegionShape::Foot> RegionShape::foot(const std::array<Rational, 3>
     for (std::size_t i = 0; i < tile.a.size() && least >= 0; ++i) least = std::min(least, side(tile, i, place));
     if (least < 0) continue;
     if (least == 0 && !frame_.strictly_inside(a, b)) return std::nullopt;
-    return Foot{tile.face, outline_.rounded(planar_ ? offset : on_plane(tile, offset))};
+    const Vec3 point = outline_.rounded(planar_ ? offset : on_plane(tile, offset));
+    const FaceId face = scene_.pieces()[tile.piece].face;
+    return receiver_on(
+        scene_, face,
+        is_lone_ ? std::vector{face} : own_faces(scene_, face, point, tolerance_of_computed_points(scene_)), point);
   }
   return std::nullopt;
 }

@@ -25,22 +25,19 @@ class RegionShape {
   [[nodiscard]] const FacePlane& outline() const { return outline_; }
   [[nodiscard]] const FaceFrame& frame() const { return frame_; }
 
-  struct Foot {
-    FaceId face{};
-    Vec3 point;
-  };
-  // The first face that the point lies on as seen along the outline's normal, and the point of that face, rounded once.
-  // Nothing if the point does not lie strictly inside the outline. `offset` is relative to the outline's first corner,
-  // in units of 2^exponent; a and b are its coordinates in the frame.
-  [[nodiscard]] std::optional<Foot> foot(const std::array<kernel::Rational, 3>& offset, const FaceFrame::Coordinate& a,
-                                         const FaceFrame::Coordinate& b) const;
+  // A receiver on the first piece that the point lies on as seen along the outline's normal, at the point of that
+  // piece, rounded once (receiver_on). Nothing if the point does not lie strictly inside the outline. `offset` is
+  // relative to the outline's first corner, in units of 2^exponent; a and b are its coordinates in the frame.
+  [[nodiscard]] std::optional<Receiver> receiver_under(const std::array<kernel::Rational, 3>& offset,
+                                                       const FaceFrame::Coordinate& a,
+                                                       const FaceFrame::Coordinate& b) const;
 
  private:
   static constexpr double kUncertain = 0x1p-43;
 
   // A convex piece of a face that is seen from its front along the outline's normal.
   struct Tile {
-    FaceId face{};
+    std::uint32_t piece = 0;
     kernel::ExactVec3 corner;
     kernel::ExactVec3 normal;
     std::vector<kernel::Integer> a, b;  // of the corners, in the frame
@@ -53,7 +50,7 @@ class RegionShape {
   };
 
   RegionShape(const Scene& scene, const Region& region, const std::vector<std::vector<std::uint32_t>>& outline);
-  void add_tile(FaceId face, std::size_t ring);
+  void add_tile(std::uint32_t piece, std::size_t ring);
   void fill_bins();
   [[nodiscard]] std::size_t bin_of(double t) const;
   [[nodiscard]] static int side(const Tile& tile, std::size_t corner, const PlanePlace& place);
@@ -63,6 +60,8 @@ class RegionShape {
   FacePoints points_;  // of the outline, then of each tile as a ring
   FacePlane outline_;
   FaceFrame frame_;
+  const Scene& scene_;
+  bool is_lone_;  // face
   bool planar_ = true;
   long a_bits_ = 0, b_bits_ = 0;
   std::vector<Tile> tiles_;  // by face

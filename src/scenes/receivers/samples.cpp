@@ -19,6 +19,7 @@
 #include "exactff/receiver.h"
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"
+#include "receivers/placing.h"
 #include "scene/face_points.h"
 
 namespace exactff {
@@ -186,8 +187,8 @@ std::vector<Receiver> sample_receivers(const Scene& scene, std::span<const FaceI
     samples.take();
     const auto chosen = std::upper_bound(sums.begin(), sums.end(), numbers.below(sums.back())) - sums.begin();
     const Triangle& triangle = triangles[static_cast<std::size_t>(chosen)];
-    const Vec3 point = point_in(scene, triangle, numbers);
-    receivers.push_back({point, scene.face(triangle.face).newell, {triangle.face}, std::to_string(i)});
+    receivers.push_back(receiver_on(scene, triangle.face, {triangle.face}, point_in(scene, triangle, numbers)));
+    receivers.back().id = std::to_string(i);
   }
   return receivers;
 }

@@ -7,12 +7,15 @@
 //   3. Is it strictly inside the outline, as seen along N? If not, the receiver is at the mean of the
 //      corners of the piece that weighs most.
 #include <array>
+#include <optional>
 #include <unordered_set>
 
 #include "exactff/error.h"
 #include "exactff/receiver.h"
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"
+#include "kernel/vec.h"
+#include "receivers/own_pieces.h"
 #include "receivers/placing.h"
 #include "receivers/region_shape.h"
 #include "scene/places.h"
@@ -47,7 +50,9 @@ void append_corners(const Scene& scene, FaceId id, std::vector<Receiver>& receiv
     for (const std::uint32_t v : ring) {
       ++number;
       if (!visited.insert(places(scene)[v]).second) continue;
-      receivers.push_back({scene.vertices()[v], face.newell, {id}, prefix + std::to_string(number)});
+      const Vec3& point = scene.vertices()[v];
+      receivers.push_back(
+          {point, front_of_piece(scene, own_piece(scene, id, point)), {id}, prefix + std::to_string(number)});
     }
   }
 }
@@ -71,14 +76,13 @@ class RegionCentre {
     const FaceId first = region_.faces.front();
     const Offset offset = {quotient(at.numerator.x, at.denominator), quotient(at.numerator.y, at.denominator),
                            quotient(at.numerator.z, at.denominator)};
-    if (region_.faces.size() > 1) {
-      if (const auto foot = shape_.foot(offset, along(shape_.frame().e(), at), along(shape_.frame().f(), at))) {
-        return {foot->point, scene_.face(foot->face).newell,
-                own_faces(scene_, foot->face, foot->point, tolerance_of_computed_points(scene_)),
-                numbered_name_of(scene_, first)};
-      }
+    std::optional<Receiver> receiver;
+    if (!is_one_planar_face(scene_, region_)) {
+      receiver = shape_.receiver_under(offset, along(shape_.frame().e(), at), along(shape_.frame().f(), at));
     }
-    return {plane_.rounded(offset), scene_.face(first).newell, {first}, numbered_name_of(scene_, first)};
+    if (!receiver) receiver = receiver_on(scene_, first, {first}, plane_.rounded(offset));
+    receiver->id = numbered_name_of(scene_, first);
+    return *receiver;
   }
 
  private:
@@ -196,6 +200,33 @@ std::vector<Receiver> centre_receivers(const Scene& scene, std::span<const Regio
 
 std::vector<Receiver> centre_receivers(const Scene& scene, std::span<const FaceId> on) {
   return centre_receivers(scene, lone_regions(scene, on));
+}
+
+// At a corner itself, walls that meet there would be seen edge-on, which is not what is seen a hair beside it.
+std::vector<Receiver> probe_receivers(const Scene& scene, std::span<const FaceId> on) {
+  constexpr double kToCentre = 0.125;
+  const kernel::StandardArithmetic arithmetic;
+  std::vector<Receiver> receivers;
+  for (const FaceId face : on) {
+    for (std::uint32_t k = 0; k < scene.face(face).piece_count; ++k) {
+      const std::uint32_t index = scene.face(face).first_piece + k;
+      const std::span<const std::uint32_t> corners = scene.corners(scene.pieces()[index]);
+      const Vec3 front = front_of_piece(scene, index);
+      Vec3 centre;
+      for (const std::uint32_t v : corners) {
+        centre = kernel::along(centre, scene.vertices()[v], 1.0 / static_cast<double>(corners.size()));
+      }
+      const auto add = [&](const Vec3& point) {
+        if (kernel::is_finite(point)) receivers.push_back({point, front, {face}, {}});
+      };
+      add(centre);
+      for (const std::uint32_t v : corners) {
+        const Vec3& corner = scene.vertices()[v];
+        add(kernel::along(corner, kernel::difference(centre, corner), kToCentre));
+      }
+    }
+  }
+  return receivers;
 }
 
 }  // namespace exactff

@@ -72,6 +72,19 @@ Residue inverse(Residue a) {
   return result;
 }
 
+// Of residues that are not 0, by one inverse for all (Montgomery).
+std::vector<Residue> inverses(const std::vector<Residue>& values) {
+  std::vector<Residue> products{1};
+  for (const Residue value : values) products.push_back(reduced(products.back() * value));
+  Residue rest = inverse(products.back());
+  std::vector<Residue> result(values.size());
+  for (std::size_t i = values.size(); i > 0; --i) {
+    result[i - 1] = reduced(rest * products[i - 1]);
+    rest = reduced(rest * values[i - 1]);
+  }
+  return result;
+}
+
 class PlaneFinder {
  public:
   explicit PlaneFinder(const Scene& scene) : scene_(scene), at_(scene.vertices().size()) {
@@ -80,11 +93,9 @@ class PlaneFinder {
 
   // For each piece, the first one in its plane.
   [[nodiscard]] std::vector<std::uint32_t> first_pieces() const {
-    const auto count = static_cast<std::uint32_t>(scene_.pieces().size());
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> hashed(count);
-    for (std::uint32_t piece = 0; piece < count; ++piece) hashed[piece] = {hash_of(scene_.pieces()[piece]), piece};
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> hashed = hashes();
     std::ranges::sort(hashed);
-    std::vector<std::uint32_t> first(count);
+    std::vector<std::uint32_t> first(hashed.size());
     for (auto run = hashed.begin(); run != hashed.end();) {
       const auto end = std::find_if(run, hashed.end(), [&](const auto& other) { return other.first != run->first; });
       set_first_pieces({run, end}, first);
@@ -115,17 +126,30 @@ class PlaneFinder {
            plane.side_of(corner(piece, 2)) == 0;
   }
 
-  [[nodiscard]] std::uint64_t hash_of(const Piece& piece) const {
-    const Residues& a = at_[piece.frame[0]];
-    Residues n = cross(difference(at_[piece.frame[1]], a), difference(at_[piece.frame[2]], a));
-    if (n == Residues{}) n = primitive_normal(piece);
-    const Residue first = n[0] != 0 ? n[0] : n[1] != 0 ? n[1] : n[2];
-    const Residue by = inverse(first);
-    std::uint64_t hash = 0;
-    for (const Residue component : {n[0], n[1], n[2], dot(n, a)}) {
-      hash = kernel::split_mix(hash, reduced(component * by));
+  [[nodiscard]] std::vector<std::pair<std::uint64_t, std::uint32_t>> hashes() const {
+    std::vector<Residues> normals;
+    std::vector<Residue> first;  // that is not 0
+    for (const Piece& piece : scene_.pieces()) {
+      const Residues& n = normals.emplace_back(normal_of(piece));
+      first.push_back(n[0] != 0 ? n[0] : n[1] != 0 ? n[1] : n[2]);
     }
-    return hash;
+    const std::vector<Residue> by = inverses(first);
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> result;
+    for (std::uint32_t piece = 0; piece < normals.size(); ++piece) {
+      const Residues& n = normals[piece];
+      std::uint64_t hash = 0;
+      for (const Residue component : {n[0], n[1], n[2], dot(n, at_[scene_.pieces()[piece].frame[0]])}) {
+        hash = kernel::split_mix(hash, reduced(component * by[piece]));
+      }
+      result.emplace_back(hash, piece);
+    }
+    return result;
+  }
+
+  [[nodiscard]] Residues normal_of(const Piece& piece) const {
+    const Residues& a = at_[piece.frame[0]];
+    const Residues n = cross(difference(at_[piece.frame[1]], a), difference(at_[piece.frame[2]], a));
+    return n == Residues{} ? primitive_normal(piece) : n;
   }
 
   [[nodiscard]] Residues primitive_normal(const Piece& piece) const {

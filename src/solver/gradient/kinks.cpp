@@ -31,9 +31,7 @@ void KinkSearch::find(const PlaneQuery& query, bool is_visible, Extent extent) {
   judged_.clear();
   const visibility::View& view = query.view;
   const visibility::SourcePlane& plane = query.plane;
-  const auto pieces = view.scene.pieces();
-  const bool is_own = std::ranges::all_of(plane.pieces, [&](std::uint32_t p) { return view.is_own(pieces[p].face); });
-  if (is_own) return;
+  if (view.is_own(plane.pieces.front())) return;
   const int side = side_of(plane, view.x);
   if (side > 0) find_around_source(query, is_visible, extent);
   if (side == 0) find_edge_on(query);
@@ -59,9 +57,7 @@ std::pair<std::uint32_t, std::uint32_t> apart(const visibility::View& view, cons
 void KinkSearch::find_edge_on(const PlaneQuery& query) {
   const visibility::View& view = query.view;
   const visibility::SourcePlane& plane = query.plane;
-  const auto holds = [&](std::uint32_t own) {
-    return !view.is_own(view.scene.pieces()[own].face) && holds_x(view, view.scene.pieces()[own]);
-  };
+  const auto holds = [&](std::uint32_t piece) { return holds_x(view, view.scene.pieces()[piece]); };
   const bool on_source = std::ranges::any_of(plane.pieces, holds);
   const ExactVec3 n = view.normal().exact;
   if (is_zero(cross(plane.normal.exact, n))) {  // it is the horizon

@@ -362,9 +362,7 @@ std::vector<SightArc> SightPlane::arcs_of_source_edge_on() {
     if (std::optional<Stripe> stripe = stripe_of(o)) stripes_.push_back(std::move(*stripe));
   }
   for (Stripe& stripe : stripes_) find_nearness(stripe);
-  for (const std::uint32_t piece : plane.pieces) {
-    if (!view.is_own(view.scene.pieces()[piece].face)) source_sheets_.push_back(sheet_of(piece));
-  }
+  for (const std::uint32_t piece : plane.pieces) source_sheets_.push_back(sheet_of(piece));
   std::vector<ExactVec3> breaks;
   std::vector<const RationalVec3*> lines;
   const auto add_break = [&](const ExactVec3& t) {

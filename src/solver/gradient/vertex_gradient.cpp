@@ -37,8 +37,7 @@ void VertexGradient::start(const visibility::View& view) {
 
 // 1. False: no vertex moves anything.
 bool VertexGradient::gather(const PlaneQuery& query) {
-  const auto pieces = query.view.scene.pieces();
-  if (std::ranges::all_of(query.plane.pieces, [&](auto p) { return query.view.is_own(pieces[p].face); })) return false;
+  if (query.view.is_own(query.plane.pieces.front())) return false;
   if (side_of(query.plane, query.view.x) <= 0) return false;
   profile_.gather(query, Profile::Extent::kMeeting);
   return profile_.source_count() > 0 && !profile_.stays_hidden();

@@ -24,7 +24,9 @@ class BooleanWalk {
 
   // Steps 1 to 4 alone.
   Cutters find_cutters() {
-    if (view_.is_buried || !gather_source() || side_of(plane_, view_.x) <= 0 || !clip_by_horizon()) return {};
+    if (view_.is_buried || view_.is_own(plane_.pieces.front()) || side_of(plane_, view_.x) <= 0) return {};
+    gather_source();
+    if (!clip_by_horizon()) return {};
     make_hull();
     if (gather_occluders()) list_cutters();
     return std::move(result_.cutters);
@@ -45,7 +47,7 @@ class BooleanWalk {
 
  private:
   Outcome find_outcome();
-  bool gather_source();
+  void gather_source();
   [[nodiscard]] Ring ring_of(std::uint32_t piece) const;
   bool clip_by_horizon();
   void make_hull();
@@ -76,7 +78,8 @@ class BooleanWalk {
 Outcome BooleanWalk::find_outcome() {
   // 1. Cull.
   if (view_.is_buried) return Outcome::kBuried;
-  if (!gather_source()) return Outcome::kReceiverFace;
+  if (view_.is_own(plane_.pieces.front())) return Outcome::kReceiverFace;
+  gather_source();
   if (side_of(plane_, view_.x) <= 0) return Outcome::kBehind;
   // 2. Clip by the receiver's horizon.
   if (!clip_by_horizon()) return Outcome::kBelowHorizon;
@@ -105,14 +108,9 @@ Outcome BooleanWalk::find_outcome() {
   return loops_.empty() ? Outcome::kHiddenByUnion : Outcome::kPartlyHidden;
 }
 
-// The pieces as x sees them, without the receiver's own faces. False if none is left.
-bool BooleanWalk::gather_source() {
-  for (const std::uint32_t index : plane_.pieces) {
-    const Piece& piece = view_.scene.pieces()[index];
-    if (view_.is_own(piece.face)) continue;
-    source_.push_back(ring_of(index));
-  }
-  return !source_.empty();
+// The pieces as x sees them.
+void BooleanWalk::gather_source() {
+  for (const std::uint32_t index : plane_.pieces) source_.push_back(ring_of(index));
 }
 
 // As x sees the front of the piece.
@@ -186,7 +184,7 @@ bool BooleanWalk::gather_occluders() {
 
 // Without occluders a single convex piece is its own boundary.
 void BooleanWalk::trace_source() {
-  whole_ = !result_.record.horizon_clipped && source_.size() == plane_.pieces.size();
+  whole_ = !result_.record.horizon_clipped;
   if (clipped_.size() == 1) {
     std::vector<ExactVec3> corners;
     for (const Direction& corner : hull_) corners.push_back(corner.exact);

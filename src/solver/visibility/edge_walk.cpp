@@ -30,7 +30,6 @@ class EdgeWalk {
 
  private:
   [[nodiscard]] std::optional<Outcome> find_outcome();
-  [[nodiscard]] bool is_own() const;
   [[nodiscard]] std::uint64_t most_candidates() const;
   [[nodiscard]] std::optional<Outcome> find_by_silhouettes();
   [[nodiscard]] Outcome hidden_by_panel(PanelId panel);
@@ -50,7 +49,7 @@ std::optional<Outcome> EdgeWalk::find_outcome() {
   PlaneRecord& record = result_.record;
   // 1. Cull.
   if (query_.view.is_buried) return Outcome::kBuried;
-  if (is_own()) return Outcome::kReceiverFace;
+  if (query_.view.is_own(query_.plane.pieces.front())) return Outcome::kReceiverFace;
   if (side_of(query_.plane, query_.view.x) <= 0) return Outcome::kBehind;
   // 2. Clip by the receiver's horizon.
   source_ = PieceClip(query_, edges_.outlines(), work_.search.clip).add_source();
@@ -116,13 +115,6 @@ std::optional<Outcome> EdgeWalk::find_by_silhouettes() {
   return Outcome::kHiddenByUnion;
 }
 
-// Whether the receiver lies on all of the source's faces.
-bool EdgeWalk::is_own() const {
-  const auto pieces = query_.view.scene.pieces();
-  return std::ranges::all_of(query_.plane.pieces,
-                             [&](std::uint32_t piece) { return query_.view.is_own(pieces[piece].face); });
-}
-
 void EdgeWalk::note_edges(const EdgeCovers& found) {
   PlaneRecord& record = result_.record;
   record.pairs = found.pairs();
@@ -133,7 +125,7 @@ void EdgeWalk::note_edges(const EdgeCovers& found) {
 
 Rational EdgeWalk::fraction() {
   if (result_.boundary.empty()) return 0;
-  const bool is_whole = !source_.is_cut && !source_.lacks_pieces && query_.plane.covers.empty();
+  const bool is_whole = !source_.is_cut && query_.plane.covers.empty();
   if (result_.record.outcome == Outcome::kUnoccluded && is_whole) return 1;
   Outlines& outlines = *outlines_;
   std::vector<Ring> source;

@@ -12,14 +12,9 @@ ClippedSource PieceClip::add_source() {
   outlines_.start(view_.scene, view_.x, std::max({std::abs(s.x), std::abs(s.y), std::abs(s.z)}));
   outlines_.set_source_plane(plane_.normal.exact, plane_.fine_normal, plane_.point);
   const Panels& all = *plane_.scene_panels;
-  const bool has_own = std::ranges::any_of(plane_.faces, [&](FaceId face) { return view_.is_own(face); });
   ClippedSource source;
-  for (const PanelId panel : has_own || by_pieces_ ? plane_.pieces : plane_.panels) {
-    if (has_own && view_.is_own(all.piece(panel).face)) {
-      source.lacks_pieces = true;
-    } else if (add_above_horizon(all.corners(panel), source)) {
-      ++source.count;
-    }
+  for (const PanelId panel : by_pieces_ ? plane_.pieces : plane_.panels) {
+    if (add_above_horizon(all.corners(panel), source)) ++source.count;
   }
   return source;
 }

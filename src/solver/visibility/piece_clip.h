@@ -11,9 +11,8 @@ namespace exactff::visibility {
 
 // The part of the source above the horizon: the first outlines.
 struct ClippedSource {
-  std::size_t count = 0;      // outlines, each of one panel
-  bool is_cut = false;        // by the horizon
-  bool lacks_pieces = false;  // those of the receiver's own faces
+  std::size_t count = 0;  // outlines, each of one panel
+  bool is_cut = false;    // by the horizon
 };
 
 class PieceClip {

@@ -12,6 +12,7 @@
 
 #include "exactff/exact.h"
 #include "exactff/receiver.h"
+#include "receivers/own_pieces.h"
 #include "scene/panels.h"
 #include "scene/shaft_tree.h"
 #include "visibility/boundary_piece.h"
@@ -22,17 +23,17 @@ namespace exactff::visibility {
 
 class PlaneFrame;
 
-// Everything that depends on the receiver alone. Keeps a reference to the receiver's faces.
+// Everything that depends on the receiver alone.
 struct View {
   View(const Scene& scene_in, const Receiver& receiver);
 
   const Scene& scene;
   Vec3 x;
-  Vec3 n;                      // the receiver's normal
-  std::span<const FaceId> on;  // the receiver's own faces
-  bool is_buried;              // see scene/contacts.h: nothing is seen
+  Vec3 n;         // the receiver's normal
+  OwnPieces own;  // neither occlude nor illuminate
+  bool is_buried;  // see scene/contacts.h: nothing is seen
 
-  [[nodiscard]] bool is_own(FaceId face) const { return std::ranges::find(on, face) != on.end(); }
+  [[nodiscard]] bool is_own(std::uint32_t piece) const { return own.contains(piece); }
   // The normal as a direction in integers, which are seldom needed.
   [[nodiscard]] kernel::Direction normal() const;
 };
@@ -111,26 +112,12 @@ void for_each_candidate(const View& view, const HalfSpaceGroups& shaft, ShaftCul
   }
 }
 
-// Whether a sheet has a piece of the receiver's own faces. Then its pieces are candidates, not its panels.
-[[nodiscard]] bool is_own_sheet(const View& view, const Panels& panels, std::uint32_t sheet);
-// Whether x lies beside the plane of such a sheet. Otherwise its pieces hide nothing.
-[[nodiscard]] bool is_beside_own_sheet(const View& view, const Panels& panels);
-
 // For the edge engine: the same for panels.
 template <class Visit>
 void for_each_panel(const PlaneQuery& query, const HalfSpaceGroups& shaft, const Visit& visit) {
   const View& view = query.view;
   if (!query.request.joins_pieces()) return for_each_candidate(view, shaft, query.request.culling, visit);
-  const Panels& panels = *query.plane.scene_panels;
-  bool goes_on = true;
-  panel_tree(view.scene).query_with_inside(view.x, shaft, [&](PanelId panel, bool inside) {
-    return goes_on = visit(panel, inside);
-  });
-  if (!goes_on || panels.empty() || !is_beside_own_sheet(view, panels)) return;
-  shaft_tree(view.scene).query_with_inside(view.x, shaft, [&](std::uint32_t piece, bool inside) {
-    const std::uint32_t sheet = panels.sheet_of_piece(piece);
-    return sheet == Panels::kNoSheet || !is_own_sheet(view, panels, sheet) || visit(piece, inside);
-  });
+  panel_tree(view.scene).query_with_inside(view.x, shaft, visit);
 }
 
 // For both engines: true if a panel of the scene may occlude the plane. The source's own pieces in this plane cannot;

@@ -24,6 +24,7 @@ struct ShaftMemory {
 
 // By closed surface.
 struct BacksMemory {
+  RunMarks has_own_piece;  // by surface, as `decided`
   RunMarks decided;
   std::vector<std::uint8_t> left_out;  // where it is decided
 };

@@ -57,8 +57,10 @@ void Silhouettes::gather(std::size_t source_count, PlaneRecord& record) {
     memory_.groups.set(order);
     edges_.query(query_.view.x, memory_.groups, [&](std::uint32_t edge, bool in_front) { visit(edge, in_front); });
   }
-  for (const FaceId face : query_.view.on) {
-    for (const Piece& piece : scene.pieces_of(face)) visit_edges_of(piece);
+  for (const PlaneId plane : query_.view.own.planes()) {
+    const auto own = query_.view.own.pieces_in(plane);
+    if (facing_of(query_.view, scene.pieces()[own.front()]) == 0) continue;  // on neither side of any edge
+    for (const std::uint32_t piece : own) visit_edges_of(scene.pieces()[piece]);
   }
   for (const std::uint32_t piece : query_.plane.pieces) visit_edges_of(scene.pieces()[piece]);
 }

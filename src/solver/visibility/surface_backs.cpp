@@ -5,8 +5,20 @@
 namespace exactff::visibility {
 
 void SurfaceBacks::start() {
-  memory_.decided.clear(surfaces_.surfaces().size());
-  memory_.left_out.resize(surfaces_.surfaces().size());
+  const std::size_t count = surfaces_.surfaces().size();
+  memory_.decided.clear(count);
+  memory_.left_out.resize(count);
+  if (count == 0) return;
+  memory_.has_own_piece.clear(count);
+  const View& view = query_.view;
+  for (const PlaneId plane : view.own.planes()) {
+    const auto own = view.own.pieces_in(plane);
+    if (facing_of(view, view.scene.pieces()[own.front()]) == 0) continue;  // x sees them edge-on
+    for (const std::uint32_t piece : own) {
+      const std::uint32_t surface = surfaces_.of_piece(piece);
+      if (surface != ClosedSurfaces::kNone) memory_.has_own_piece.set(surface);
+    }
+  }
 }
 
 bool SurfaceBacks::backs_left_out(std::uint32_t surface) {
@@ -24,14 +36,7 @@ bool SurfaceBacks::may_leave_out_backs(std::uint32_t surface) const {
   const Vec3& x = view.x;
   const bool outside = x.x < low.x || x.y < low.y || x.z < low.z || x.x > high.x || x.y > high.y || x.z > high.z;
   if (!outside || !ShaftTree::certainly_inside({low, high}, x, shaft_.front())) return false;
-  return std::ranges::none_of(view.on, [&](FaceId own) { return has_piece_in(view.scene.face(own), surface); });
-}
-
-bool SurfaceBacks::has_piece_in(const Face& face, std::uint32_t surface) const {
-  for (std::uint32_t piece = face.first_piece; piece < face.first_piece + face.piece_count; ++piece) {
-    if (surfaces_.of_piece(piece) == surface) return true;
-  }
-  return false;
+  return !memory_.has_own_piece.is_set(surface);
 }
 
 }  // namespace exactff::visibility

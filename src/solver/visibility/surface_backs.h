@@ -1,11 +1,12 @@
 // Which pieces of closed surfaces are left out because they show x their backs.
 //
-// Let x lie outside the box of a closed surface (closed_surfaces.h) all of whose pieces may occlude, and let the box
-// lie on x's side of the source's plane, off it. Along almost every segment from x to a point y of that plane the
-// winding number goes up by one at each piece that is crossed from the front, down by one at each that is crossed from
-// the back, and is 0 at both ends, which lie outside the box. So as many pieces are crossed from the front as from the
-// back. The pieces that show x their backs cover the same region as the pieces that show x their fronts, up to a set of
-// area zero, and either set may be left out. All pieces remain candidates, and each may still hide all.
+// Let x lie outside the box of a closed surface (closed_surfaces.h) all of whose pieces may occlude or are seen
+// edge-on, and let the box lie on x's side of the source's plane, off it. Along almost every segment from x to a point
+// y of that plane the winding number goes up by one at each piece that is crossed from the front, down by one at each
+// that is crossed from the back, and is 0 at both ends, which lie outside the box. So as many pieces are crossed from
+// the front as from the back. The pieces that show x their backs cover the same region as the pieces that show x their
+// fronts, up to a set of area zero, and either set may be left out. All pieces remain candidates, and each may still
+// hide all.
 #pragma once
 
 #include "scene/closed_surfaces.h"
@@ -39,7 +40,6 @@ class SurfaceBacks {
   }
   [[nodiscard]] bool backs_left_out(std::uint32_t surface);
   [[nodiscard]] bool may_leave_out_backs(std::uint32_t surface) const;
-  [[nodiscard]] bool has_piece_in(const Face& face, std::uint32_t surface) const;
 
   const PlaneQuery& query_;
   const SourceShaft& shaft_;

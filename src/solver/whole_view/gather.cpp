@@ -74,7 +74,7 @@ void ViewEdges::gather(const visibility::View& view, Wholes wholes) {
   shaft_tree(view.scene).query(view.x, {}, [&](std::uint32_t index) {
     const Piece& piece = pieces[index];
     steps.take();
-    if (piece.transparent || (!view.on.empty() && view.is_own(piece.face))) return true;
+    if (piece.transparent || view.is_own(index)) return true;
     const int facing = visibility::facing_of(view, piece);
     if (facing == 0) return true;
     const bool back_apart = wholes == Wholes::kFaces || wholes == Wholes::kPlanes;

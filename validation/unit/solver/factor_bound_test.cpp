@@ -44,7 +44,7 @@ TEST(FactorBound, IsAtLeastEveryFormFactorOfTheCell) {
     const ExactScene exact(scene);
     const Part receiver = parts_of(exact, scene.select("receiver")).front();
     const Part source = parts_of(exact, scene.select("source")).front();
-    const auto sight = sight_of(exact, SeenParts(exact).seen_from(receiver).occluders, receiver, source, receiver.face);
+    const auto sight = sight_of(exact, SeenParts(exact).seen_from(receiver).occluders, receiver, source);
     if (!sight) continue;
     ++seeing;
     const double bound = FactorBound(*sight).on(sight->root);

@@ -37,7 +37,7 @@ class Seen {
         receiver_(parts_of(exact_, scene.select("floor")).front()),
         source_(scene, scene.select("source")),
         sight_(sight_of(exact_, SeenParts(exact_).seen_from(receiver_).occluders, receiver_,
-                        parts_of(exact_, scene.select("source")).front(), receiver_.face)) {}
+                        parts_of(exact_, scene.select("source")).front())) {}
 
   [[nodiscard]] bool sees() const { return sight_.has_value(); }
   [[nodiscard]] const Part& receiver() const { return receiver_; }
@@ -130,7 +130,7 @@ TEST(SlopeBound, OfWhatIsOpenIsAtLeastEveryChangeInTheView) {
     const Selection patch{static_cast<PatchId>(random.below(scene.patches().size())), {}, scene.id()};
     const std::vector<Part> parts = parts_of(exact, patch);
     const Part& receiver = parts[random.below(parts.size())];
-    const Sight sight = sight_of_open(exact, SeenParts(exact).seen_from(receiver).occluders, receiver, receiver.face);
+    const Sight sight = sight_of_open(exact, SeenParts(exact).seen_from(receiver).occluders, receiver);
     const auto open = [&](const Vec3& at) {
       return view(scene, receiver_at(exact, at, sight.receiver, receiver.face)).open.value;
     };

@@ -35,8 +35,7 @@ void visit_cells(const Scene& scene, const char* from, const char* to, const Vis
   using namespace view_factors;
   const ExactScene exact(scene);
   const Part receiver = parts_of(exact, scene.select(from)).front(), source = parts_of(exact, scene.select(to)).front();
-  const std::optional<Sight> sight =
-      sight_of(exact, SeenParts(exact).seen_from(receiver).occluders, receiver, source, receiver.face);
+  const std::optional<Sight> sight = sight_of(exact, SeenParts(exact).seen_from(receiver).occluders, receiver, source);
   ASSERT_TRUE(sight);
   PairMemory memory;
   CellView view(*sight, memory, 0);

@@ -297,7 +297,7 @@ class Scene:
         sources : names ``NAME`` or ``NAME:k``, or patterns such as ``"lamp_*"`` for all that match; "all" for every patch;
             "sky" for what is open, all directions that meet nothing (unless a patch has this name), without `fraction` and
             `gradient`; default: every patch that emits
-        on : own faces, which neither hide nor light the receiver: None, a name such as "floor" or "floor:1+2" for
+        on : own faces, whose planes hold nothing that hides or lights the receiver: None, a name such as "floor" or "floor:1+2" for
             all; "auto" (or "auto:DISTANCE") to find them; an integer array of the receivers' shape, or with one more
             axis for several faces each, where -1 stands for none; or a list with a name, indices or None for each
         threads : 0 for as many as this process may use; no value depends on it
