@@ -67,8 +67,7 @@ struct Sum {
 [[nodiscard]] std::vector<std::string> reasons_against_one(const Scene& scene, const Matrix& matrix);
 
 // The two directions of pairs of patches, where both are in the matrix: A_i F_ij = A_j F_ji. A test of their bounds if
-// they were computed apart (ViewFactorOptions::both_directions). Patches with faces that are not planar are left out:
-// at a point of such a face, its other triangles hide nothing.
+// they were computed apart (ViewFactorOptions::both_directions).
 struct Reciprocity {
   struct Pair {
     std::size_t row = 0, column = 0;
@@ -79,7 +78,7 @@ struct Reciprocity {
   std::optional<Pair> worst;  // the largest distance / radius
   std::vector<Pair> apart;    // their intervals have no number in common: a bound does not hold
 };
-[[nodiscard]] Reciprocity reciprocity(const Scene& scene, const Matrix& matrix);
+[[nodiscard]] Reciprocity reciprocity(const Matrix& matrix);
 
 // The scene with the backs of these patches or faces as patches of their own, named "NAME (back)": every face has a
 // twin in its place that is turned round and has the same material; a face that is not planar and its twin consist of

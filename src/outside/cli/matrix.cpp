@@ -162,7 +162,7 @@ bool test_rows(const MatrixArguments& args, const Scene& scene, const matrix::Ma
 // Whether the intervals of the two directions of every pair have a number in common.
 bool test_reciprocity(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
   if (!args.options.factors.both_directions) return true;
-  const matrix::Reciprocity found = reciprocity(scene, matrix);
+  const matrix::Reciprocity found = reciprocity(matrix);
   const auto pair_name = [&](const matrix::Reciprocity::Pair& pair) {
     return scene.name_of(matrix.factors.from[pair.row]) + " and " + scene.name_of(matrix.factors.to[pair.column]);
   };

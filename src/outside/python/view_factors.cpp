@@ -110,7 +110,7 @@ py::tuple view_factor_matrix_of(const std::shared_ptr<SharedScene>& scene, const
   matrix::Matrix made = interrupt.run([&] {
     matrix::Matrix computed = matrix::compute(in, rows, columns, options, interrupt.hooks());
     reasons = reasons_against_one(in, computed);
-    if (both_directions) reciprocity = matrix::reciprocity(in, computed);
+    if (both_directions) reciprocity = matrix::reciprocity(computed);
     return computed;
   });
   py::list sums;

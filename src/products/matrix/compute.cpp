@@ -41,14 +41,6 @@ bool are_different(const std::vector<Selection>& to) {
   return std::ranges::none_of(with_faces, [&](PatchId patch) { return patches.contains(patch); });
 }
 
-// At a point of a face that is not planar, its other triangles are seen, but hide nothing.
-bool has_bent_rows(const Scene& scene, const std::vector<Selection>& from) {
-  return std::ranges::any_of(from, [&](const Selection& patch) {
-    return std::ranges::any_of(scene.faces_of(patch),
-                               [&](FaceId face) { return scene.face(face).shape == FaceShape::kTriangulated; });
-  });
-}
-
 // By its number, row by row, with back, open and buried.
 ViewFactor& entry_of(Matrix& matrix, std::size_t entry) {
   const std::size_t patches = matrix.factors.to.size();
@@ -98,10 +90,7 @@ std::vector<Sum> row_sums(const Matrix& matrix) {
 
 std::vector<Sum> clipped_row_sums(const Scene& scene, const Matrix& matrix) {
   std::vector<Sum> sums = row_sums(matrix);
-  if (!are_different(matrix.factors.to) || !scene.transparent().empty() || has_bent_rows(scene, matrix.factors.from) ||
-      have_fronts_in_common(scene)) {
-    return sums;
-  }
+  if (!are_different(matrix.factors.to) || !scene.transparent().empty() || have_fronts_in_common(scene)) return sums;
   for (Sum& sum : sums) {
     if (sum.lower <= 1.0) sum.upper = std::min(sum.upper, 1.0);  // else a bound does not hold, and it shows
   }
@@ -114,7 +103,6 @@ std::vector<std::string> reasons_against_one(const Scene& scene, const Factors& 
   if (!known.back) reasons.emplace_back("what meets backs is not computed");
   if (!known.open) reasons.emplace_back("what is open is not computed");
   if (!scene.transparent().empty()) reasons.emplace_back("some faces are transparent");
-  if (has_bent_rows(scene, factors.from)) reasons.emplace_back("some faces of the rows are not planar");
   if (have_fronts_in_common(scene)) reasons.emplace_back("fronts of different patches overlap in one plane");
   return reasons;
 }

@@ -5,7 +5,6 @@
 
 #include "kernel/outward.h"
 #include "matrix/back_factors.h"
-#include "view_factors/patch_parts.h"
 
 namespace exactff::matrix {
 namespace {
@@ -89,10 +88,6 @@ const OpenFactors::Sides& OpenFactors::sides() const {
   return *sides_;
 }
 
-bool OpenFactors::may_be_rest(std::size_t row) const {
-  return scene_.pieces().size() <= kMostPieces && view_factors::is_planar(scene_, from_[row]);
-}
-
 ViewFactor OpenFactors::of_row(std::size_t row) const {
   if (pairs_.is_enclosed(row)) return {};
   for (std::size_t w = 0; w < made_.windows.size(); ++w) {
@@ -100,7 +95,7 @@ ViewFactor OpenFactors::of_row(std::size_t row) const {
       return factor_of(*to_windows_, row * made_.windows.size() + w);
     }
   }
-  if (may_be_rest(row) && sides().unhidden(row) < kLittle) {
+  if (scene_.pieces().size() <= kMostPieces && sides().unhidden(row) < kLittle) {
     const ViewFactor rest = rest_of(sides().of_row(row), pairs_.exposed_share(row));
     if (rest.accurate) return rest;
     const ViewFactor to_sky = factor_of(to_sky_, row);

@@ -2,8 +2,7 @@
 //
 // - Closed surfaces around all that the row sees: nothing.
 // - Within a surface with a convex hole and nothing beyond: the factor to the hole (SceneWithSky).
-// - If little is there to be seen: the rest that the faces leave of 1, from either side. The row's faces must be
-//   planar, since the pieces of others see through each other.
+// - If little is there to be seen: the rest that the faces leave of 1, from either side.
 // - Otherwise, or if the rest is not accurate: the factor to the sky or the rest, the one that is narrower.
 #pragma once
 
@@ -35,7 +34,6 @@ class OpenFactors {
  private:
   class Sides;
   [[nodiscard]] const Sides& sides() const;
-  [[nodiscard]] bool may_be_rest(std::size_t row) const;
 
   const Scene& scene_;
   std::vector<Selection> from_;

@@ -4,14 +4,12 @@
 #include "exactff/matrix.h"
 #include "kernel/float_environment.h"
 #include "kernel/outward.h"
-#include "view_factors/patch_parts.h"
 
 namespace exactff::matrix {
 namespace {
 
 using kernel::above;
 using kernel::below;
-using view_factors::is_planar;
 
 constexpr double kRoundedAreas = 0x1p-44;  // relative; as in view_factors/view_factor.cpp
 
@@ -51,16 +49,12 @@ void add_pair(Reciprocity& result, std::size_t row, std::size_t column, const Vi
 
 }  // namespace
 
-Reciprocity reciprocity(const Scene& scene, const Matrix& matrix) {
+Reciprocity reciprocity(const Matrix& matrix) {
   const kernel::StandardArithmetic arithmetic;
   const Factors& all = matrix.factors;
   std::vector<std::optional<std::size_t>> column_of_row, row_of_column;
-  for (const Selection& patch : all.from) {
-    column_of_row.push_back(is_planar(scene, patch) ? place_of(patch, all.to) : std::nullopt);
-  }
-  for (const Selection& patch : all.to) {
-    row_of_column.push_back(is_planar(scene, patch) ? place_of(patch, all.from) : std::nullopt);
-  }
+  for (const Selection& patch : all.from) column_of_row.push_back(place_of(patch, all.to));
+  for (const Selection& patch : all.to) row_of_column.push_back(place_of(patch, all.from));
   Reciprocity result;
   for (std::size_t i = 0; i < all.from.size(); ++i) {
     for (std::size_t j = 0; j < all.to.size(); ++j) {

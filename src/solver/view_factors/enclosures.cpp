@@ -199,9 +199,7 @@ Enclosures::Enclosures(const ExactScene& scene)
 
 Windings Enclosures::above(const Part& part) const {
   Windings windings(surfaces_.size());
-  const bool is_planar = std::ranges::all_of(
-      faces_of(scene_.scene, part), [&](FaceId face) { return scene_.scene.face(face).shape == FaceShape::kPlanar; });
-  if (!is_planar || surfaces_.empty()) return windings;
+  if (surfaces_.empty()) return windings;
   const Interior interior(scene_, part);
   std::ranges::transform(surfaces_, windings.begin(), [&](const ExactSurface& surface) {
     kernel::poll();

@@ -2,8 +2,8 @@
 //
 // Let S be a closed surface with winding number w (scene/closed_surfaces.h). If w just above a point x of one part
 // differs from w just above a point y of another one, then almost every segment from such an x to such a y crosses
-// pieces of S whose signs add up to the difference, and so at least one piece. It lies in the plane of neither part,
-// and so is not a part of the receiver's own face: the segment is blocked. Far away from S, w is 0: if it is other than
+// pieces of S whose signs add up to the difference, and so at least one piece. It lies in the plane of neither part:
+// the segment is blocked. Far away from S, w is 0: if it is other than
 // 0 just above x, so is almost every ray from there.
 //
 // If S has holes in a plane, all this holds on its side of the plane, for parts that lie there and, if in the plane,
@@ -35,8 +35,7 @@ class Enclosures {
   // Keeps a reference.
   explicit Enclosures(const ExactScene& scene);
 
-  // Transparent pieces belong to no closed surface. Nothing is proved of pieces of faces that are not planar: at their
-  // points, other pieces of their face hide nothing.
+  // Transparent pieces belong to no closed surface.
   [[nodiscard]] Windings above(const Part& part) const;
   // Whether nothing outside of closed surfaces is proved to be seen. False does not mean that anything is.
   [[nodiscard]] bool are_around(const Windings& windings) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kernel/vec.h"
+#include "receivers/own_pieces.h"
 #include "view_factors/patch_parts.h"
 
 namespace exactff::view_factors {
@@ -41,18 +42,14 @@ Point point_at(const Vec3& at, const Units& units) {
 
 }  // namespace
 
-NearPlanes::NearPlanes(const ExactScene& scene, const Part& part) : scene_(&scene), own_{part.face} {
+NearPlanes::NearPlanes(const ExactScene& scene, const Part& part) : scene_(&scene), own_(part.face) {
   const Plane plane = plane_of(part, scene.units);
   const Homogeneous behind = opposite(plane.exact);
+  front_ = plane.exact;
   normal_ = {plane.rounded[0], plane.rounded[1], plane.rounded[2]};
   const Box box = widen(box_of(part.corners));
   for (const ExactPiece& piece : scene.pieces) {
-    if (piece.face == part.face || piece.box.is_apart_from(box)) continue;
-    const bool is_in_plane = piece.plane.exact == plane.exact || piece.plane.exact == behind;
-    if (is_in_plane && scene.scene.face(piece.face).shape == FaceShape::kPlanar) {
-      if (own_.back() != piece.face) own_.push_back(piece.face);  // a face's pieces are in a row
-      continue;
-    }
+    if (piece.box.is_apart_from(box) || piece.plane.exact == plane.exact || piece.plane.exact == behind) continue;
     const auto in_part = [&](std::uint32_t corner) { return is_nearly_in(plane, scene.vertices[corner]); };
     const auto in_piece = [&](const Point& corner) { return is_nearly_in(piece.plane, corner); };
     const bool nearly = std::ranges::all_of(piece.corners, in_part) || std::ranges::all_of(part.corners, in_piece);
@@ -75,7 +72,10 @@ std::optional<Vec3> NearPlanes::round(const Point& point) const {
     };
     if (std::ranges::any_of(nearly_, changes)) return std::nullopt;
   }
-  return Vec3{in_scene(point.at.x), in_scene(point.at.y), in_scene(point.at.z)};
+  const Vec3 rounded{in_scene(point.at.x), in_scene(point.at.y), in_scene(point.at.z)};
+  const bool is_bent = scene_->scene.face(own_).shape != FaceShape::kPlanar;
+  if (is_bent && scene_->pieces[own_piece(scene_->scene, own_, rounded)].plane.exact != front_) return std::nullopt;
+  return rounded;
 }
 
 }  // namespace exactff::view_factors

@@ -111,11 +111,11 @@ Evaluated precise_value(const Formula& formula, const Cell& cell, const CellPlac
 
 }  // namespace
 
-Pair::Pair(const Scene& scene, Sight sight, std::vector<FaceId> receiver_faces,
-           std::shared_ptr<const ExactSource> whole, PairMemory& memory, std::size_t id)
+Pair::Pair(const Scene& scene, Sight sight, FaceId receiver_face, std::shared_ptr<const ExactSource> whole,
+           PairMemory& memory, std::size_t id)
     : scene_(scene),
       sight_(std::move(sight)),
-      receiver_faces_(std::move(receiver_faces)),
+      receiver_face_(receiver_face),
       whole_(std::move(whole)),
       bound_(sight_),
       view_(sight_, memory, id) {
@@ -483,7 +483,7 @@ double Pair::factor_near(const Vec3& at) const {
   const auto& normal = sight_.receiver.rounded;  // its largest component is about 1
   const Receiver receiver{.point = {coordinate(at.x), coordinate(at.y), coordinate(at.z)},
                           .normal = {normal[0], normal[1], normal[2]},
-                          .on = receiver_faces_,
+                          .on = {receiver_face_},
                           .id = {}};
   return exact_form_factor(scene_, receiver, *whole_).value;
 }
@@ -511,7 +511,7 @@ void Pair::check(const Cell& cell, const Formula& formula) const {
     exact = factor_near({inside.x + above * plane[0], inside.y + above * plane[1], inside.z + above * plane[2]});
     if (std::abs(found - exact) <= kLargestMismatch + (above == 0.0 ? 0.0 : turned)) return;
   }
-  throw std::logic_error("a view factor's cell on " + scene_.name_of(receiver_faces_.front()) + " sees " +
+  throw std::logic_error("a view factor's cell on " + scene_.name_of(receiver_face_) + " sees " +
                          text::shortest(found) + " of " + scene_.name_of(whole_->selection()) + ", its point sees " +
                          text::shortest(exact));
 }

@@ -70,12 +70,12 @@ class Pair {
   };
   // Where the source part is whole faces, `whole` is these, or lies all around the scene: a point factor to it checks
   // each cell. `id` tells the pairs apart that share the memory.
-  Pair(const Scene& scene, Sight sight, std::vector<FaceId> receiver_faces, std::shared_ptr<const ExactSource> whole,
+  Pair(const Scene& scene, Sight sight, FaceId receiver_face, std::shared_ptr<const ExactSource> whole,
        PairMemory& memory, std::size_t id);
 
   [[nodiscard]] std::size_t point_count() const { return sight_.points.point_count(); }
   [[nodiscard]] const Sight& sight() const { return sight_; }
-  [[nodiscard]] FaceId receiver_face() const { return receiver_faces_.front(); }
+  [[nodiscard]] FaceId receiver_face() const { return receiver_face_; }
   [[nodiscard]] const ExactSource* whole() const { return whole_.get(); }
   // An estimate of how many lines cut the receiver (CellView::count_events).
   [[nodiscard]] std::size_t events();
@@ -157,7 +157,7 @@ class Pair {
 
   const Scene& scene_;
   Sight sight_;
-  std::vector<FaceId> receiver_faces_;
+  FaceId receiver_face_;
   std::shared_ptr<const ExactSource> whole_;
   Limits limits_;
   FactorBound bound_;

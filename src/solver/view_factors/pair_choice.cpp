@@ -42,16 +42,15 @@ std::unique_ptr<Pair> PairChoice::choose(std::span<const std::uint32_t> pieces, 
 
 std::unique_ptr<Pair> PairChoice::of_open(std::span<const std::uint32_t> pieces, const Part& receiver,
                                           std::shared_ptr<const ExactSource> whole) {
-  return std::make_unique<Pair>(scene_.scene, sight_of_open(scene_, pieces, receiver, receiver.face),
-                                faces_of(scene_.scene, receiver), std::move(whole), memory_, made_++);
+  return std::make_unique<Pair>(scene_.scene, sight_of_open(scene_, pieces, receiver), receiver.face, std::move(whole),
+                                memory_, made_++);
 }
 
 std::unique_ptr<Pair> PairChoice::make(std::span<const std::uint32_t> pieces, const PairEnd& receiver,
                                        const PairEnd& source) {
-  std::optional<Sight> sight = sight_of(scene_, pieces, receiver.part, source.part, receiver.part.face);
+  std::optional<Sight> sight = sight_of(scene_, pieces, receiver.part, source.part);
   if (!sight) return nullptr;
-  return std::make_unique<Pair>(scene_.scene, std::move(*sight), faces_of(scene_.scene, receiver.part), source.whole,
-                                memory_, made_++);
+  return std::make_unique<Pair>(scene_.scene, std::move(*sight), receiver.part.face, source.whole, memory_, made_++);
 }
 
 }  // namespace exactff::view_factors

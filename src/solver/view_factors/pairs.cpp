@@ -140,7 +140,7 @@ double Pairs::unhidden(std::size_t row, std::size_t column) const {
 Pairs::Ends Pairs::ends_of(std::size_t entry) const {
   const std::size_t columns = patches_->columns.size();
   const PreparedPatch *const row = patches_->rows[entry / columns], *const column = patches_->columns[entry % columns];
-  const bool turned = is_symmetric(*row, *column, options_) && key_of(column->selection) < key_of(row->selection);
+  const bool turned = is_symmetric(*column, options_) && key_of(column->selection) < key_of(row->selection);
   return turned ? Ends{column, row, true} : Ends{row, column, false};
 }
 

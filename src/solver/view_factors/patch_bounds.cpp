@@ -75,9 +75,8 @@ void PatchBounds::add_slopes(std::size_t part, OfPart& of) {
   for (std::size_t s = 0; s < sources; ++s) {
     if (pieces_ > SlopeBound::kMostPieces) return of.slopes.clear();
     kernel::poll();
-    const std::optional<Sight> sight = to_.surrounds()
-                                           ? sight_of_open(scene_, occluders, receiver, receiver.face)
-                                           : sight_of(scene_, occluders, receiver, to_.parts[s], receiver.face);
+    const std::optional<Sight> sight = to_.surrounds() ? sight_of_open(scene_, occluders, receiver)
+                                                       : sight_of(scene_, occluders, receiver, to_.parts[s]);
     if (!sight) continue;
     of.slopes.emplace_back(*sight);
     pieces_ += of.slopes.back().pieces();

@@ -110,7 +110,7 @@ std::vector<Contact> contacts(const ExactScene& scene, const Part& part) {
   std::vector<Contact> result;
   for (std::uint32_t index = 0; index < scene.pieces.size(); ++index) {
     const ExactPiece& piece = scene.pieces[index];
-    if (piece.face == part.face || piece.transparent || piece.box.is_apart_from(box)) continue;
+    if (piece.transparent || piece.box.is_apart_from(box)) continue;
     if (!is_on_both_sides(part, piece.plane)) continue;
     const std::optional<Contact> one = contact(scene, index, plane);
     if (one && !one->box.is_apart_from(box)) result.push_back(*one);
@@ -238,11 +238,6 @@ double error_of_shares(const std::vector<Part>& parts, const Units& units) {
     sum += exact.centre;
   }
   return sum > radii ? 2.0 * radii / (sum - radii) : 1.0;
-}
-
-bool is_planar(const Scene& scene, const Selection& patch) {
-  return std::ranges::all_of(scene.faces_of(patch),
-                             [&](FaceId face) { return scene.face(face).shape == FaceShape::kPlanar; });
 }
 
 std::pair<double, double> areas_of(const ExactScene& scene, const Selection& patch, const std::vector<Part>& parts) {

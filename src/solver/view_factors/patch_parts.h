@@ -32,10 +32,6 @@ enum class PartsOf { kWhole, kExposed };
 // roundings make them.
 [[nodiscard]] double error_of_shares(const std::vector<Part>& parts, const Units& units);
 
-// Whether all faces of the patch are planar. At a point of another face, its other triangles hide nothing, and F_ij and
-// F_ji need not be reciprocal.
-[[nodiscard]] bool is_planar(const Scene& scene, const Selection& patch);
-
 // The area of a patch with these parts, in squares of the unit of Point::at and of the scene's unit of length: both
 // positive and finite. Throws InputError otherwise.
 [[nodiscard]] std::pair<double, double> areas_of(const ExactScene& scene, const Selection& patch,

@@ -11,7 +11,7 @@ constexpr std::uint64_t kEffortOfPoint = 100, kEffortOfPlane = 125, kEffortOfCan
 std::optional<double> PointFactors::at(const Point& point, const NearPlanes& near, const ExactSource& source) {
   const std::optional<Vec3> rounded = near.round(point);
   if (!rounded) return std::nullopt;
-  exact_form_factor(scene_, {.point = *rounded, .normal = near.normal(), .on = near.own(), .id = {}}, source, {},
+  exact_form_factor(scene_, {.point = *rounded, .normal = near.normal(), .on = {near.own()}, .id = {}}, source, {},
                     factor_, workspace_);
   effort_ += kEffortOfPoint;
   for (const PlaneRecord& plane : factor_.planes) {

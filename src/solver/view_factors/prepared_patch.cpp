@@ -31,7 +31,6 @@ PreparedPatch::PreparedPatch(const ExactScene& scene, const Selection& patch, Co
       parts(parts_of(scene, patch)),
       exposed_share{.centre = 1.0},
       enclosed_area(enclosed_area_of(parts, scene.units)),
-      planar(is_planar(scene.scene, patch)),
       opaque(is_opaque(scene.scene, patch)),
       what(what_it_is) {
   std::tie(unit_area, area) = areas_of(scene, patch, parts);
@@ -55,11 +54,11 @@ double counted_area(const PreparedPatch& from, const PreparedPatch& to) {
   return to.what == Columns::kPatches ? std::min(from.unit_area, to.unit_area) : from.unit_area;
 }
 
-bool are_reciprocal(const PreparedPatch& i, const PreparedPatch& j) { return i.planar && j.planar && !j.surrounds(); }
+bool are_reciprocal(const PreparedPatch& column) { return !column.surrounds(); }
 
 double largest_factor(const PreparedPatch& i, const PreparedPatch& j) {
   const kernel::Disc ratio = j.enclosed_area / i.enclosed_area;
-  return are_reciprocal(i, j) && i.opaque && is_finite(ratio) ? std::min(1.0, upper_end(ratio)) : 1.0;
+  return are_reciprocal(j) && i.opaque && is_finite(ratio) ? std::min(1.0, upper_end(ratio)) : 1.0;
 }
 
 bool are_separated(const SeenParts& seen, const PreparedPatch& row, std::size_t i, const PreparedPatch& column,

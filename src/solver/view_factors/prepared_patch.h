@@ -25,8 +25,7 @@ struct PreparedPatch {
   double area = 0.0;           // of the exposed part, in the same unit
   double unit_area = 0.0;      // the same in squares of the unit of Point::at
   kernel::Disc enclosed_area;  // the same
-  bool planar = true;          // all of its faces
-  bool opaque = true;          // the same: a point sees at most 1 of it
+  bool opaque = true;          // a point sees at most 1 of it
   Columns what;                // of columns; else kPatches
   SeenParts::OfPatch seen;
 
@@ -40,8 +39,8 @@ struct PreparedPatch {
 // for.
 [[nodiscard]] double counted_area(const PreparedPatch& from, const PreparedPatch& to);
 
-// Whether A_i F_ij = A_j F_ji holds.
-[[nodiscard]] bool are_reciprocal(const PreparedPatch& i, const PreparedPatch& j);
+// Whether A_i F_ij = A_j F_ji holds for the factors of this column.
+[[nodiscard]] bool are_reciprocal(const PreparedPatch& column);
 // F_ij is at most this: 1 and, where F_ji is at most 1, A_j / A_i.
 [[nodiscard]] double largest_factor(const PreparedPatch& i, const PreparedPatch& j);
 

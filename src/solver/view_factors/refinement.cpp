@@ -42,7 +42,7 @@ Refinement::Refinement(const ExactScene& scene, const SeenParts& seen, const Pre
 }
 
 void Refinement::look_at_pairs(const ExactScene& scene, const SeenParts& seen, PairMemory& memory) {
-  PairChoice choice(scene, memory, is_symmetric(from_, to_, options_));
+  PairChoice choice(scene, memory, is_symmetric(to_, options_));
   const std::vector<PairEnd> receivers = ends_of(scene.scene, from_);
   const auto occluders = [&](std::size_t r) { return std::span(from_.seen.lists(seen, from_.parts)[r].occluders); };
   if (to_.surrounds()) {

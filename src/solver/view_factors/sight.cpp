@@ -13,8 +13,8 @@ constexpr std::uint32_t kByReceiver = 0, kBySource = 1;  // names of planes that
 
 class Maker {
  public:
-  Maker(const ExactScene& scene, std::span<const std::uint32_t> pieces, FaceId own)
-      : scene_(scene), pieces_(pieces), own_(own), sight_(scene.units) {}
+  Maker(const ExactScene& scene, std::span<const std::uint32_t> pieces)
+      : scene_(scene), pieces_(pieces), sight_(scene.units) {}
 
   std::optional<Sight> make(const Part& receiver_part, const Part& source_part) {
     Points& points = sight_.points;
@@ -96,7 +96,7 @@ class Maker {
   // Some of it lies in front of both planes, and perhaps in the shaft of the pair, and the pair on both sides of its
   // plane.
   [[nodiscard]] bool may_lie_between(const ExactPiece& piece) const {
-    if (piece.transparent || piece.face == own_) return false;
+    if (piece.transparent) return false;
     if (shaft_ && (piece.box.is_apart_from(between_) || shaft_->is_outside(piece.box))) return false;
     const auto has_corner_before = [&](const Plane& plane) {
       return std::ranges::any_of(piece.corners,
@@ -195,7 +195,6 @@ class Maker {
 
   const ExactScene& scene_;
   std::span<const std::uint32_t> pieces_;
-  FaceId own_;
   Sight sight_;
   Plane source_plane_;
   Box receiver_box_, source_box_, between_;
@@ -219,12 +218,12 @@ std::vector<FaceId> faces_of(const Scene& scene, const Part& part) {
 }
 
 std::optional<Sight> sight_of(const ExactScene& scene, std::span<const std::uint32_t> pieces, const Part& receiver,
-                              const Part& source, FaceId own) {
-  return Maker(scene, pieces, own).make(receiver, source);
+                              const Part& source) {
+  return Maker(scene, pieces).make(receiver, source);
 }
 
-Sight sight_of_open(const ExactScene& scene, std::span<const std::uint32_t> pieces, const Part& receiver, FaceId own) {
-  return Maker(scene, pieces, own).make_of_open(receiver);
+Sight sight_of_open(const ExactScene& scene, std::span<const std::uint32_t> pieces, const Part& receiver) {
+  return Maker(scene, pieces).make_of_open(receiver);
 }
 
 }  // namespace exactff::view_factors

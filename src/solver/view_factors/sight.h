@@ -12,8 +12,8 @@
 // - Let S lie on the front side of the source's plane, or in it. Then w(y) is the number of bases there that hold y,
 //   those with the front towards x counting as -1: it is at least 0 if all of them face away.
 //
-// The receiver's own face does not occlude. If it belongs to S, its piece is a base that holds every x, and nothing is
-// left out. For a surface that is turned inside out, all this holds with fronts and backs exchanged.
+// Pieces in the receiver's plane do not occlude. If the receiver's piece belongs to S, it is a base that holds every x,
+// and nothing is left out. For a surface that is turned inside out, all this holds with fronts and backs exchanged.
 //
 // Of what is open, y is so far away that w(y) is 0.
 #pragma once
@@ -74,12 +74,11 @@ struct Part {
 // The faces that it is a part of: of a joined panel all of its sheet, which lie in its plane.
 [[nodiscard]] std::vector<FaceId> faces_of(const Scene& scene, const Part& part);
 
-// Empty if no point of the receiver lies in front of the source, or the other way round: the factor is 0. `own` does
-// not occlude. `pieces`: all that may occlude, by ascending index (seen_parts.h).
+// Empty if no point of the receiver lies in front of the source, or the other way round: the factor is 0. `pieces`: all
+// that may occlude, by ascending index (seen_parts.h).
 [[nodiscard]] std::optional<Sight> sight_of(const ExactScene& scene, std::span<const std::uint32_t> pieces,
-                                            const Part& receiver, const Part& source, FaceId own);
+                                            const Part& receiver, const Part& source);
 // Of all directions in front of the receiver.
-[[nodiscard]] Sight sight_of_open(const ExactScene& scene, std::span<const std::uint32_t> pieces, const Part& receiver,
-                                  FaceId own);
+[[nodiscard]] Sight sight_of_open(const ExactScene& scene, std::span<const std::uint32_t> pieces, const Part& receiver);
 
 }  // namespace exactff::view_factors

@@ -82,7 +82,7 @@ class PointSearch {
               const ViewFactorOptions& options)
       : from_(from),
         to_(to),
-        turned_(is_symmetric(from, to, options) && has_better_points(to, from)),
+        turned_(is_symmetric(to, options) && has_better_points(to, from)),
         mean_(scene, seen, turned_ ? to : from, turned_ ? from : to, kPointsOfBudget * options.budget,
               (turned_ ? to : from).unit_area / counted_area(from, to)) {}
 
@@ -239,8 +239,8 @@ class Search {
 
 }  // namespace
 
-bool is_symmetric(const PreparedPatch& i, const PreparedPatch& j, const ViewFactorOptions& options) {
-  return are_reciprocal(i, j) && !options.both_directions;
+bool is_symmetric(const PreparedPatch& column, const ViewFactorOptions& options) {
+  return are_reciprocal(column) && !options.both_directions;
 }
 
 ViewFactor factor_between(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from,

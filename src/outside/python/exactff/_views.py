@@ -51,7 +51,7 @@ class PairOfPatches(NamedTuple):
 
 @dataclass(frozen=True)
 class Reciprocity:
-    """How well the two directions of each pair agree: a test of their bounds. Patches that are not planar are left out."""
+    """How well the two directions of each pair agree: a test of their bounds."""
 
     pairs: int
     worst: Optional[PairOfPatches]  #: the largest distance / radius
