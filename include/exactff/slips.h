@@ -21,7 +21,7 @@ enum class Kind {
   kUnseenFront,        // no other patch can see the front of a patch
   kEmitterLooksAway,   // nothing lies before the front of an emitter
   kDoubledFaces,       // two faces have the same corners and the same front
-  kOppositeFaces,      // two faces have the same corners and opposite fronts
+  kOppositeFaces,      // the same with opposite fronts, and the two are cut into other triangles
   kOverlappingFronts,  // fronts of different patches overlap in one plane, such as a window and its wall
   kNearlyCoplanar,     // likewise, but their planes are a rounding apart
   kScale,              // coordinates suggest a wrong unit

@@ -25,10 +25,18 @@ std::vector<FaceId> own_faces(const std::string& on, const Scene& scene, const R
                     .suggestion = "check --at and --normal, or look further away with --on auto:DISTANCE"});
 }
 
-void warn_of_turned_normal(const Scene& scene, const Receiver& receiver) {
-  if (near_misses(scene, std::span(&receiver, 1)).turned == 0) return;
-  std::cerr << "exactff: warning: the normal points away from the front of '"
-            << text::printable(scene.name_of(receiver.on)) << "', so the receiver looks through its back\n";
+void warn_of_own_face(const Scene& scene, const Receiver& receiver) {
+  const NearMisses misses = near_misses(scene, std::span(&receiver, 1));
+  const std::string own = '\'' + text::printable(scene.name_of(receiver.on)) + '\'';
+  if (misses.turned > 0) {
+    std::cerr << "exactff: warning: the normal points away from the front of " << own
+              << ", so the receiver looks through its back\n";
+  }
+  if (misses.hidden > 0) {
+    std::cerr << "exactff: warning: x lies on " << own
+              << ", but behind another face that is nearly in its plane and hides everything; "
+              << text::printable(misses.mends_hidden) << " lets light pass through it\n";
+  }
 }
 
 }  // namespace
@@ -37,10 +45,10 @@ void OneReceiver::add_to(CLI::App& app) {
   flags::add_vector_option(app, "--at", at, "The receiver's point")->required();
   flags::add_vector_option(app, "--normal", normal, "The receiver's normal, of any length except zero", "NX NY NZ")
       ->required();
-  app.add_option("--on", on,
-                 "The receiver lies on this face, or on several (floor:1+2), which then neither occlude nor illuminate "
-                 "it; auto or "
-                 "auto:DISTANCE finds them")
+  app.add_option(
+         "--on", on,
+         "The receiver lies on this face, or on several (floor:1+2); faces exactly in their planes then neither "
+         "occlude nor illuminate it; auto or auto:DISTANCE finds them")
       ->type_name("NAME[:K]");
 }
 
@@ -63,7 +71,7 @@ void warn_if_off_its_face(const Scene& scene, const Receiver& receiver) {
 
 void warn_of_near_face(const Scene& scene, const Receiver& receiver,
                        const std::function<std::string(const std::vector<FaceId>&)>& effect) {
-  if (!receiver.on.empty()) return warn_of_turned_normal(scene, receiver);
+  if (!receiver.on.empty()) return warn_of_own_face(scene, receiver);
   const NearFaces near = find_faces(scene, receiver, face_tolerance(scene, receiver.point));
   if (near.faces.empty() || near.side == 0) return;
   const std::string name = scene.name_of(near.faces);

@@ -97,10 +97,26 @@ void check_output(std::ostream& out) {
                     .suggestion = "free some disk space, or send the output elsewhere"});
 }
 
-void print_near_misses(const Scene& scene, std::span<const Receiver> receivers) {
-  for (const std::string& sentence : sentences(near_misses(scene, receivers), receivers.size())) {
+namespace {
+
+void print_misses(const Scene& scene, std::span<const Receiver> receivers, std::string_view noun) {
+  for (const std::string& sentence : sentences(near_misses(scene, receivers), receivers.size(), noun)) {
     std::cerr << "warning: " << text::printable(sentence) << '\n';
   }
+}
+
+}  // namespace
+
+void print_near_misses(const Scene& scene, std::span<const Receiver> receivers) {
+  print_misses(scene, receivers, "receiver");
+}
+
+void print_hidden_faces(const Scene& scene) {
+  constexpr std::size_t kMost = 4096;
+  const std::size_t step = scene.faces().size() / kMost + 1;
+  std::vector<FaceId> faces;
+  for (std::size_t i = 0; i < scene.faces().size(); i += step) faces.push_back(static_cast<FaceId>(i));
+  print_misses(scene, probe_receivers(scene, faces), "point");
 }
 
 void print_warnings(std::span<const Problem> warnings) {

@@ -38,6 +38,9 @@ void check_output(std::ostream& out);
 void print_warnings(std::span<const Problem> warnings);
 // Warnings on receivers that were probably meant to lie on a face.
 void print_near_misses(const Scene& scene, std::span<const Receiver> receivers);
+// Warnings on faces that lie behind others, which hide everything from them. Of more than 4,096 faces, about that many
+// are looked at.
+void print_hidden_faces(const Scene& scene);
 
 // Throws InputError unless a result can be written to `folder` (page/output_folder.h).
 void check_output_folder(const std::filesystem::path& folder);

@@ -255,6 +255,7 @@ int run(const RenderArguments& args) {
   const flags::LitScene lit = with_progress([&] { return flags::load(args.scene, args.solution); });
   const Scene& scene = lit.scene;
   print_warnings(scene.warnings());
+  print_hidden_faces(scene);
   const render::Request request = with_progress([&] { return request_of(args, lit, method); });
   const std::string note = flags::note_on_sources_without_emission(scene, request.sources);
   if (!note.empty()) std::cerr << "note: " << text::printable(note) << '\n';

@@ -106,8 +106,9 @@ std::string what_helps(Limit limit, bool certify) {
 Scene load(const flags::SceneArguments& args, const std::vector<std::string>& two_sided) {
   Scene scene = args.load();
   print_warnings(scene.warnings());
-  if (two_sided.empty()) return scene;
-  return matrix::with_two_sided(scene, flags::selections_named(scene, two_sided));
+  if (!two_sided.empty()) scene = matrix::with_two_sided(scene, flags::selections_named(scene, two_sided));
+  print_hidden_faces(scene);
+  return scene;
 }
 
 std::optional<Problem> problem_of_overlaps(const Scene& scene, std::span<const Selection> columns) {

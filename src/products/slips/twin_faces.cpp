@@ -1,7 +1,9 @@
 // Faces with the same corners.
 #include <algorithm>
+#include <set>
 
 #include "scene/places.h"
+#include "scene/planes.h"
 #include "scene/selections.h"
 #include "slips/findings.h"
 #include "text/fnv1a.h"
@@ -81,12 +83,23 @@ class TwinFinder {
       if (twin != kinds.end()) {
         doubled.push_back({face, twin->first});
       } else {
-        if (back != kinds.end()) opposite.push_back({face, back->first});
+        // Two sides of a sheet, unless they are cut into other triangles.
+        if (back != kinds.end() && !lie_in_the_same_planes(face, back->first)) opposite.push_back({face, back->first});
         if (kinds.size() < kMostKinds) kinds.emplace_back(face, same);
       }
     }
   }
   static constexpr std::size_t kMostKinds = 16;
+
+  [[nodiscard]] bool lie_in_the_same_planes(FaceId a, FaceId b) const {
+    const auto planes_of = [&](FaceId id) {
+      std::set<PlaneId> found;
+      const Face& face = scene_.face(id);
+      for (std::uint32_t k = 0; k < face.piece_count; ++k) found.insert(planes(scene_).of_piece(face.first_piece + k));
+      return found;
+    };
+    return planes_of(a) == planes_of(b);
+  }
 
   const Scene& scene_;
   const std::span<const std::uint32_t> places_;
@@ -103,9 +116,10 @@ Finding finding_of(const Scene& scene, Kind kind, const std::vector<Twins>& twin
   finding.words.what = text::counted(twins.size(), "face") + (twins.size() == 1 ? " has" : " have") +
                        " the corners of another face and " + (same ? "the same front" : "the opposite front") +
                        ", such as " + quoted(twins.front().later) + " and " + quoted(twins.front().first);
-  finding.words.why =
-      same ? "as sources of two patches both count, and a receiver a hair behind one of them sees nothing"
-           : "a receiver on one of them may lie a hair behind the other, which then hides everything";
+  finding.words.why = same ? "as sources of two patches both count"
+                           : "they are cut into other triangles, so a receiver on one of them may lie behind the "
+                             "other, which then hides "
+                             "everything";
   const std::string flag = finding.flag.empty() ? "--transparent NAME,NAME,..." : finding.flag;
   finding.words.suggestion =
       same

@@ -203,5 +203,43 @@ TEST_F(ChangedFaces, InfoShowsFindingsAndProposesWhatWorks) {
   EXPECT_EQ(json["findings"][0]["objects"], std::vector<std::string>{"lamp"});
 }
 
+// A face a billionth above the floor, which hides everything from it. Each command that places points on faces counts
+// them, and is silent once its advice is obeyed.
+TEST_F(ChangedFaces, EveryCommandTellsOfFacesThatHideItsPoints) {
+  const std::string covered =
+      directory_
+          .write("covered.obj",
+                 "mtllib room.mtl\nv 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 3\nv 2 1 3\nv 2 2 3\nv 1 2 3\n"
+                 "v -1 -1 1e-9\nv 9 -1 1e-9\nv -1 9 1e-9\n"
+                 "usemtl grey\ng floor\nf 1 2 3 4\nusemtl bright\ng lamp\nf 8 7 6 5\nusemtl grey\ng cover\nf 9 10 11\n")
+          .string();
+  const std::string file = (directory_.path() / "written").string();
+  const std::vector<std::string> on = {"--at", "1.5", "1.5", "0", "--normal", "0", "0", "1", "--on", "floor"},
+                                 grid = {"--on", "floor", "--grid", "3x3", "--force", "-o"};
+  const auto with_all = [&](std::vector<std::string> command, const std::vector<std::string>& more) {
+    command.insert(command.begin() + 1, covered);
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  };
+  std::vector<std::vector<std::string>> commands = {
+      with_all({"point", "--source", "lamp"}, on),
+      with_all({"view"}, on),
+      with_all({"truth"}, {grid.begin(), grid.end()}),
+      with_all({"matrix", "--from", "floor", "--to", "lamp"}, {}),
+      with_all({"radiosity", "--accuracy", "1e-2", "--force", "-o", file + ".csv"}, {}),
+      with_all({"render", "--size", "4x4", "--force", "-o", file + ".exr"}, {}),
+      with_all({"compare", "--no-methods", "--eps-b", ".1", "--rays", "1", "--seeds", "1", "--pattern", "jittered",
+                "--variant", "mended"},
+               grid)};
+  for (std::vector<std::string>& command : commands) {
+    if (command.back() == "-o") command.push_back(command.front() == "compare" ? file : file + ".csv");
+    const Run told = run(command), mended = with(command, {"--transparent", "cover"});
+    EXPECT_TRUE(told.said("nearly in its plane and hides everything; --transparent cover lets light pass through it"))
+        << command.front() << ": " << told.error;
+    EXPECT_FALSE(mended.said("nearly in its plane")) << command.front() << ": " << mended.error;
+    EXPECT_TRUE(mended.exit_code == 0 || mended.exit_code == 3) << command.front() << ": " << mended.error;
+  }
+}
+
 }  // namespace
 }  // namespace exactff
