@@ -109,6 +109,11 @@ Evaluated precise_value(const Formula& formula, const Cell& cell, const CellPlac
   });
 }
 
+// A value in [0, most] that is near if any is known to be.
+Evaluated within(const Evaluated& value, double most) {
+  return {value.rounding < most ? std::clamp(value.value, 0.0, most) : 0.5 * most, 0.0};
+}
+
 }  // namespace
 
 Pair::Pair(const Scene& scene, Sight sight, FaceId receiver_face, std::shared_ptr<const ExactSource> whole,
@@ -160,7 +165,8 @@ std::vector<Share> Pair::without_cells() const {
 }
 
 template <unsigned kCount>
-Pair::Rule Pair::gauss_integral(const Formula& formula, const Cell& cell, const std::vector<Vec3>& ring) const {
+Pair::Rule Pair::gauss_integral(const Formula& formula, const Cell& cell, const std::vector<Vec3>& ring,
+                                std::optional<double> most) const {
   const std::vector<WeightedPlace> places = gauss_places<kCount>(ring);
   std::vector<Vec3> points;
   for (const WeightedPlace& p : places) points.push_back(p.at);
@@ -170,7 +176,9 @@ Pair::Rule Pair::gauss_integral(const Formula& formula, const Cell& cell, const 
   double largest = 0.0;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const bool is_enough = values[i].rounding <= limits_.rounding;
-    const auto [value, rounding] = is_enough ? values[i] : precise_value(formula, cell, places[i].place);
+    const auto [value, rounding] = is_enough ? values[i]
+                                   : most    ? within(values[i], *most)
+                                             : precise_value(formula, cell, places[i].place);
     rule.integral += places[i].weight * value;
     rule.rounding += places[i].weight * rounding;
     largest = std::max(largest, std::abs(value));
@@ -264,9 +272,11 @@ void Pair::add_dark(Cell cell, Candidates candidates, PairMemory::Way way, std::
 template <unsigned kCount>
 Pair::Integral Pair::integrate_by(const Formula& formula, const Cell& cell, double radii) const {
   const std::vector<Vec3> ring = positions_of(cell.corners);
-  const Rule rule = gauss_integral<kCount>(formula, cell, ring);
+  const bool is_resolved = radii >= kLeastRadii;
+  const double most = is_resolved ? 1.0 : bound_.on(ring);
+  const Rule rule = gauss_integral<kCount>(formula, cell, ring, is_resolved ? std::nullopt : std::optional(most));
   Integral found{.integral = rule.integral, .rounding = rule.rounding};
-  if (radii >= kLeastRadii) {
+  if (is_resolved) {
     const double lower = gauss_integral<kCount - 1>(formula, cell, ring).integral,
                  lowest = gauss_integral<kCount - 2>(formula, cell, ring).integral;
     const double rho = radii + std::sqrt(radii * radii - 1.0), rho_squared = rho * rho;
@@ -274,7 +284,7 @@ Pair::Integral Pair::integrate_by(const Formula& formula, const Cell& cell, doub
                  by_before = std::abs(lower - lowest) / (rho_squared * rho_squared);
     found.error = 4.0 * std::max(by_last, by_before) + rule.rounding;
   } else {
-    const double size = area(ring), most = bound_.on(ring);
+    const double size = area(ring);
     const double mean = size > 0.0 ? std::clamp(rule.integral / size, 0.0, most) : 0.0;
     found.bound = std::max(mean, most - mean) * kSlack;
     found.integral = mean * size;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "exactff/exact.h"
@@ -148,8 +149,10 @@ class Pair {
     double integral = 0.0;
     double rounding = 0.0;  // of the values and of the cell's area
   };
+  // `most`: where rounding matters, any value up to this is good enough, as all of them are within the error.
   template <unsigned kCount>
-  [[nodiscard]] Rule gauss_integral(const Formula& formula, const Cell& cell, const std::vector<Vec3>& ring) const;
+  [[nodiscard]] Rule gauss_integral(const Formula& formula, const Cell& cell, const std::vector<Vec3>& ring,
+                                    std::optional<double> most = {}) const;
   [[nodiscard]] Evaluated value_at(const Formula& formula, const Point& x) const;
   [[nodiscard]] double factor_near(const Vec3& at) const;
   void check(const Cell& cell, const Formula& formula) const;
