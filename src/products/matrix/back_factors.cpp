@@ -2,15 +2,16 @@
 
 #include <algorithm>
 
+#include "exactff/matrix.h"
 #include "kernel/outward.h"
 
 namespace exactff::matrix {
 namespace {
 
-constexpr double kOfRoundings = 1.0 + 0x1p-20;  // of a sum; more than they are unless it is far below 1e-9
-
 using kernel::above;
 using kernel::below;
+
+constexpr double kOfRoundings = 1.0 + 0x1p-20;  // of a sum, unless the accuracy is near them
 
 void take_work(ViewFactor& sum, const ViewFactor& f) {
   sum.claim = weaker(sum.claim, f.claim);
