@@ -17,7 +17,7 @@ namespace exactff::slips {
 enum class Kind {
   kNormals,            // normals in the file (vn) contradict the winding
   kInwardSurface,      // a closed surface looks inward, but encloses nothing, and there are faces outside
-  kOutwardRoom,        // a closed surface looks outward, and only what it encloses would see its fronts
+  kOutwardRoom,        // faces around a space look out of it, and would see more if they looked into it
   kUnseenFront,        // no other patch can see the front of a patch
   kEmitterLooksAway,   // nothing lies before the front of an emitter
   kDoubledFaces,       // two faces have the same corners and the same front
@@ -37,22 +37,31 @@ struct Finding {
 
 // At most one finding of each kind, in the order of Kind. Transparent and flipped faces are taken as they are.
 //
-// kNormals, kDoubledFaces, kOppositeFaces: complete. kInwardSurface, kOutwardRoom: from volumes and solid angles in
-// doubles.
+// kNormals, kDoubledFaces, kOppositeFaces: complete. kInwardSurface: from volumes and solid angles in doubles.
+// kOutwardRoom: an estimate, from rays of both sides of all surfaces; nothing is said of more than 5,000 surfaces.
 // kUnseenFront, kEmitterLooksAway: an estimate. Rays from a few points of a patch, and lines to the faces before it,
 // look for one that another patch can see. A patch that can only be seen through narrow gaps may be reported. Parts of
 // closed surfaces are not, unless they emit. The number of rays and lines in a scene is limited, so that 100,000 faces
 // take about a second; patches beyond it are not reported.
 //
 // A flip is advised only after it was tried: by such rays, patches must then see each other that did not, and no fewer
-// pairs in all, nor fewer of which one emits. A room is seen from inside: a closed surface that looks inward is
-// reported only if a flip helps, and if an emitter, or more area than its own, comes into its sight. Where vn
-// contradict the winding, which is evidence of its own, it suffices that no fewer pairs see each other. A closed
-// surface that looks outward is reported only if no other patch sees its fronts.
+// pairs in all, nor fewer of which one emits; and fronts must not look at more backs. A room is seen from inside: a
+// closed surface that looks inward is reported only if a flip helps, and if an emitter, or more area than its own,
+// comes into its sight. Where vn contradict the winding, which is evidence of its own, it suffices that no fewer pairs
+// see each other; but where they contradict only some faces of a connected surface whose windings agree, no flip is
+// advised. Faces are turned to the inside of a room, concave or not, if much less of the view is lost to backs and
+// nothing, and if what else sees them does not become less. kUnseenFront and kEmitterLooksAway are told once no
+// closed surface or room looks the wrong way.
 //
 // kOverlappingFronts, kNearlyCoplanar: as overlapping_fronts() says, without pairs of kDoubledFaces and those of
 // surfaces that are reported as turned. The largest few are named.
 [[nodiscard]] std::vector<Finding> diagnose(const Scene& scene);
+
+// The findings about fronts that a --flip mends, in words: what a command says before it computes something else than
+// is meant. The first leaves out kUnseenFront and kEmitterLooksAway; it takes less time, at most about a tenth of a
+// second.
+[[nodiscard]] std::vector<Problem> warnings_of_turned_surfaces(const Scene& scene);
+[[nodiscard]] std::vector<Problem> warnings_of_fronts(const Scene& scene);
 
 // Two patches or faces whose fronts lie on each other in one plane. Each has its full form factor there, so what sees
 // them counts the common part twice.
@@ -85,8 +94,7 @@ struct FirstTry {
 // Sources that are proved to give 0 at every receiver for a reason that suggests a slip: the receivers are behind the
 // source, the source is below their horizon, or a face on which they lie hides it. One warning for each source, with
 // counts and what to do. `sources` may be empty, for every patch that emits. A source on which all receivers lie is
-// left out if there are others. Of more than 10,000 receivers, 10,000 are looked at. Receivers on a closed surface of
-// kInwardSurface or kOutwardRoom get its warning.
+// left out if there are others. Of more than 10,000 receivers, 10,000 are looked at.
 [[nodiscard]] std::vector<Problem> warnings_of_dark_sources(const Scene& scene, std::span<const Receiver> receivers,
                                                             std::span<const Selection> sources);
 

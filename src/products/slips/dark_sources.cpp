@@ -191,13 +191,6 @@ std::vector<Problem> warnings_of_dark_sources(const Scene& scene, std::span<cons
     const std::optional<Counts> counts = finder.counts(ExactSource(scene, source));
     if (counts) warnings.push_back(wording.problem(source, *counts));
   }
-  FlipTrials trials(scene);
-  const auto has_receivers = [&](const Selection& object) {
-    return std::ranges::any_of(own, [&](const Selection& one) { return one.patch == object.patch; });
-  };
-  for (const Finding& finding : turned_surfaces(scene, trials)) {
-    if (std::ranges::any_of(finding.objects, has_receivers)) warnings.push_back(finding.words);
-  }
   return warnings;
 }
 

@@ -2,11 +2,14 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "exactff/slips.h"
 #include "kernel/float_environment.h"
 #include "scene/selections.h"
 #include "slips/findings.h"
+#include "slips/oriented_surfaces.h"
+#include "text/nearest_names.h"
 #include "text/phrases.h"
 
 namespace exactff::slips {
@@ -37,7 +40,10 @@ Turned turned(const Scene& scene, std::span<const Selection> selections) {
 }  // namespace
 
 std::string flag_to_flip(const Scene& scene, std::span<const Selection> selections) {
-  return flag_words(scene, "--flip", turned(scene, selections).not_yet);
+  const std::vector<Selection> not_yet = turned(scene, selections).not_yet;
+  return not_yet.size() > 1 && not_yet == all_patches(scene) && !has_patch(scene, "all")
+             ? "--flip all"
+             : flag_words(scene, "--flip", not_yet);
 }
 
 std::string words_to_flip(const Scene& scene, std::span<const Selection> selections) {
@@ -56,9 +62,25 @@ std::string advice_to_flip(const Scene& scene, std::span<const Selection> select
   return FlipTrials(scene).try_flip(selections).darkens() ? std::string() : words_to_flip(scene, selections);
 }
 
+namespace {
+
+// By face: whether vn contradict all faces of its oriented surface. Otherwise its neighbours say that vn are wrong.
+std::vector<bool> contradicted_as_a_whole(const Scene& scene) {
+  const std::vector<std::uint32_t> surface = oriented_surfaces(scene);
+  std::vector<bool> agrees(surface.size(), false), whole(scene.faces().size(), false);
+  for (std::uint32_t p = 0; p < surface.size(); ++p) {
+    if (scene.face(scene.pieces()[p].face).file_normals != FileNormals::kContradict) agrees[surface[p]] = true;
+  }
+  for (std::uint32_t p = 0; p < surface.size(); ++p) whole[index_of(scene.pieces()[p].face)] = !agrees[surface[p]];
+  return whole;
+}
+
+}  // namespace
+
 std::optional<Finding> contradicting_normals(const Scene& scene, FlipTrials& trials) {
-  std::vector<FaceId> faces;
+  std::vector<FaceId> faces, to_flip;
   std::vector<std::size_t> of_patch(scene.patches().size(), 0);
+  const std::vector<bool> alone = contradicted_as_a_whole(scene);
   std::size_t stated = 0;
   for (std::size_t i = 0; i < scene.faces().size(); ++i) {
     const Face& face = scene.faces()[i];
@@ -66,6 +88,7 @@ std::optional<Finding> contradicting_normals(const Scene& scene, FlipTrials& tri
     ++stated;
     if (face.file_normals != FileNormals::kContradict) continue;
     faces.push_back(static_cast<FaceId>(i));
+    if (alone[i]) to_flip.push_back(faces.back());
     ++of_patch[index_of(face.patch)];
   }
   if (faces.empty()) return std::nullopt;
@@ -80,14 +103,23 @@ std::optional<Finding> contradicting_normals(const Scene& scene, FlipTrials& tri
   }
   if (patches > kShown) counts += " and " + std::to_string(patches - kShown) + " more patches";
   Finding finding{.kind = Kind::kNormals, .objects = selections_of(scene, faces)};
-  const bool darkens = trials.try_flip(finding.objects).darkens();
-  if (!darkens) finding.flag = flag_to_flip(scene, finding.objects);
+  const std::vector<Selection> flips = selections_of(scene, to_flip);
+  const bool darkens = trials.try_flip(flips).darkens();
+  if (!darkens) finding.flag = flag_to_flip(scene, flips);
   finding.words = {.what = "the normals in the file (vn) contradict the winding of " +
                            text::counted_of(faces.size(), stated, "face") + ": " + counts,
                    .why = "the front is the side from which the vertices run counter-clockwise, whatever vn says",
-                   .suggestion = darkens
-                                     ? "turning them round may hide patches from each other: look first which is right"
-                                     : "if vn is right, " + words_to_flip(scene, finding.objects)};
+                   .suggestion = {}};
+  std::vector<std::string> suggestions;
+  if (!flips.empty()) {
+    suggestions.push_back(darkens ? "turning them round may hide patches from each other: look first which is right"
+                                  : "if vn is right, " + words_to_flip(scene, flips));
+  }
+  if (const std::size_t kept = faces.size() - to_flip.size(); kept > 0) {
+    suggestions.push_back("the winding of " + (flips.empty() ? "these faces" : text::counted(kept, "face")) +
+                          " agrees with that of their neighbours: there vn is the likely slip");
+  }
+  finding.words.suggestion = text::joined(suggestions, "; ");
   return finding;
 }
 
@@ -96,43 +128,63 @@ namespace {
 // Over the vertices that a face with area uses.
 struct CoordinateRange {
   double largest = 0.0;       // coordinate, in magnitude
-  double least = HUGE_VAL;    // of the coordinates, in magnitude
   double longest_side = 0.0;  // of the box
+  double float_step = 0.0;    // of float32, at the largest coordinate of an axis on which all are float32 numbers
 };
+
+bool is_float32(double value) { return static_cast<double>(static_cast<float>(value)) == value; }
+
+double step_of_float32(double value) {
+  const auto rounded = static_cast<float>(std::abs(value));
+  return std::nextafter(rounded, std::numeric_limits<float>::infinity()) - static_cast<double>(rounded);
+}
 
 CoordinateRange range_of(const Scene& scene) {
   CoordinateRange extent;
   std::array<double, 3> low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  std::array<bool, 3> may_be_float32{true, true, true};
   for (const Piece& piece : scene.pieces()) {
     for (const std::uint32_t corner : scene.corners(piece)) {
       const Vec3& v = scene.vertices()[corner];
       const std::array<double, 3> xyz{v.x, v.y, v.z};
       for (std::size_t axis = 0; axis < 3; ++axis) {
         extent.largest = std::max(extent.largest, std::abs(xyz[axis]));
-        extent.least = std::min(extent.least, std::abs(xyz[axis]));
+        may_be_float32[axis] = may_be_float32[axis] && is_float32(xyz[axis]);
         low[axis] = std::min(low[axis], xyz[axis]);
         high[axis] = std::max(high[axis], xyz[axis]);
       }
     }
   }
-  for (std::size_t axis = 0; axis < 3; ++axis)
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     extent.longest_side = std::max(extent.longest_side, high[axis] - low[axis]);
+    const double farthest = std::max(std::abs(low[axis]), std::abs(high[axis]));
+    if (may_be_float32[axis] && low[axis] < high[axis])
+      extent.float_step = std::max(extent.float_step, step_of_float32(farthest));
+  }
   return extent;
 }
 
 }  // namespace
 
 std::optional<Finding> odd_scale(const Scene& scene) {
-  constexpr double kLarge = 1e4, kSmall = 1e-3;
+  constexpr double kLarge = 1e4, kSmall = 1e-3, kCoarse = 1e-4;
   if (scene.pieces().empty()) return std::nullopt;
   const CoordinateRange extent = range_of(scene);
   std::string what;
+  if (extent.float_step > kCoarse * extent.longest_side) {
+    Finding finding{.kind = Kind::kScale};
+    finding.words = {.what = "coordinates up to " + text::short_number(extent.largest) +
+                             " are float32 numbers, which there are " + text::short_number(extent.float_step) +
+                             " apart, beside " + text::short_number(extent.longest_side) +
+                             " for the whole scene: are they rounded?",
+                     .why = "rounded corners bend faces and open gaps",
+                     .suggestion = "subtract the place of the origin before coordinates are written as float32"};
+    return finding;
+  }
   if (extent.longest_side > kLarge) {
     what = "the scene is " + text::short_number(extent.longest_side) + " long";
   } else if (extent.largest < kSmall) {
     what = "no coordinate is larger than " + text::short_number(extent.largest);
-  } else if (extent.least > kLarge) {
-    what = "every coordinate is larger than " + text::short_number(extent.least);
   } else {
     return std::nullopt;
   }
@@ -143,6 +195,24 @@ std::optional<Finding> odd_scale(const Scene& scene) {
   return finding;
 }
 
+namespace {
+
+std::vector<Finding> findings_of_fronts(const Scene& scene, FlipTrials& trials) {
+  std::vector<Finding> turned = turned_surfaces(scene, trials);
+  return turned.empty() ? unseen_fronts(scene, trials) : turned;
+}
+
+// Of those that a flag mends.
+std::vector<Problem> words_of(std::span<const Finding> findings) {
+  std::vector<Problem> words;
+  for (const Finding& finding : findings) {
+    if (!finding.flag.empty()) words.push_back(finding.words);
+  }
+  return words;
+}
+
+}  // namespace
+
 std::vector<Finding> diagnose(const Scene& scene) {
   const kernel::StandardArithmetic arithmetic;
   std::vector<Finding> findings;
@@ -151,16 +221,27 @@ std::vector<Finding> diagnose(const Scene& scene) {
   };
   FlipTrials trials(scene);
   add(contradicting_normals(scene, trials));
-  std::vector<Selection> turned;
-  for (Finding& finding : turned_surfaces(scene, trials)) {
-    turned.insert(turned.end(), finding.objects.begin(), finding.objects.end());
+  std::vector<Selection> objects;
+  for (Finding& finding : findings_of_fronts(scene, trials)) {
+    objects.insert(objects.end(), finding.objects.begin(), finding.objects.end());
     findings.push_back(std::move(finding));
   }
-  std::ranges::move(unseen_fronts(scene, turned, trials), std::back_inserter(findings));
   std::ranges::move(twin_faces(scene), std::back_inserter(findings));
-  std::ranges::move(overlap_findings(scene, turned), std::back_inserter(findings));
+  std::ranges::move(overlap_findings(scene, objects), std::back_inserter(findings));
   add(odd_scale(scene));
   return findings;
+}
+
+std::vector<Problem> warnings_of_turned_surfaces(const Scene& scene) {
+  const kernel::StandardArithmetic arithmetic;
+  FlipTrials trials(scene);
+  return words_of(turned_surfaces(scene, trials));
+}
+
+std::vector<Problem> warnings_of_fronts(const Scene& scene) {
+  const kernel::StandardArithmetic arithmetic;
+  FlipTrials trials(scene);
+  return words_of(findings_of_fronts(scene, trials));
 }
 
 }  // namespace exactff::slips

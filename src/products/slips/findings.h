@@ -17,9 +17,9 @@ namespace exactff::slips {
 [[nodiscard]] std::optional<Finding> contradicting_normals(const Scene& scene, FlipTrials& trials);
 // kInwardSurface, kOutwardRoom.
 [[nodiscard]] std::vector<Finding> turned_surfaces(const Scene& scene, FlipTrials& trials);
-// kUnseenFront, kEmitterLooksAway. `turned`: what turned_surfaces() is about.
-[[nodiscard]] std::vector<Finding> unseen_fronts(const Scene& scene, std::span<const Selection> turned,
-                                                 FlipTrials& trials);
+[[nodiscard]] std::optional<Finding> outward_rooms(const Scene& scene, std::span<const Selection> turned);
+// kUnseenFront, kEmitterLooksAway. Requires that no surface is turned the wrong way: its backs are what others see.
+[[nodiscard]] std::vector<Finding> unseen_fronts(const Scene& scene, FlipTrials& trials);
 [[nodiscard]] std::vector<Finding> twin_faces(const Scene& scene);  // kDoubledFaces, kOppositeFaces
 // kOverlappingFronts, kNearlyCoplanar, except of `turned`: what lies on the back of a table does not overlap it.
 [[nodiscard]] std::vector<Finding> overlap_findings(const Scene& scene, std::span<const Selection> turned);

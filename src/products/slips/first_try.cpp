@@ -58,11 +58,7 @@ Selection usable_source(const Scene& scene, const Selection& patch) {
 
 // The patches with area; of a single one its faces.
 std::vector<Selection> candidates_of(const Scene& scene) {
-  std::vector<Selection> patches;
-  for (std::size_t p = 0; p < scene.patches().size(); ++p) {
-    const Selection patch{static_cast<PatchId>(p), {}, scene.id()};
-    if (!scene.faces_of(patch).empty()) patches.push_back(patch);
-  }
+  std::vector<Selection> patches = all_patches(scene);
   if (patches.size() != 1) return patches;
   std::vector<Selection> faces;
   for (const FaceId face : scene.faces_of(patches.front())) faces.push_back({patches.front().patch, face, scene.id()});

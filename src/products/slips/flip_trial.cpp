@@ -29,7 +29,7 @@ bool FlipEffect::darkens() const {
   const auto of_two = [](const PairsInSight& pairs) {
     return std::ranges::count_if(pairs, [](const auto& pair) { return pair.first != pair.second; });
   };
-  return !is_complete || stacks || after.size() < before.size() || of_two(after) < of_two(before) ||
+  return !is_complete || stacks || shows_backs || after.size() < before.size() || of_two(after) < of_two(before) ||
          lit_after < lit_before;
 }
 
@@ -66,6 +66,8 @@ FlipEffect FlipTrials::try_flip(std::span<const Selection> selections) {
   effect.is_complete = sight_.usable() && rays_ < kMostRaysOfTrials;
   effect.lit_before = lit(effect.before);
   effect.lit_after = lit(effect.after);
+  if (effect.darkens()) return effect;
+  effect.shows_backs = shows_more_backs(as_they_are, flipped);
   if (effect.darkens()) return effect;
   effect.stacks = std::ranges::any_of(patches, [&](std::size_t patch) {
     return std::ranges::any_of(spread(pieces_[patch], kMostOnFronts),
@@ -147,6 +149,15 @@ void FlipTrials::follow(std::size_t patch, const Vec3& from, const Vec3& directi
 std::size_t FlipTrials::lit(const PairsInSight& pairs) const {
   return static_cast<std::size_t>(
       std::ranges::count_if(pairs, [&](const auto& pair) { return emits_[pair.first] || emits_[pair.second]; }));
+}
+
+// By more than a little of the area that is turned round.
+bool FlipTrials::shows_more_backs(const Flipped& as_they_are, const Flipped& flipped) {
+  constexpr double kLittle = 0.01;
+  if (!outlook_) outlook_.emplace(scene_, sight_);
+  double area = 0.0;
+  for (std::size_t f = 0; f < flipped.size(); ++f) area += flipped[f] ? scene_.faces()[f].area : 0.0;
+  return outlook_->lost(flipped).to_backs > outlook_->lost(as_they_are).to_backs + kLittle * area;
 }
 
 bool FlipTrials::is_on_a_front(std::uint32_t piece, const Flipped& flipped) const {

@@ -1,13 +1,16 @@
-// What a flip would change: which patches see each other, before and after it, by rays and lines of sight.
+// What a flip would change: which patches see each other and how much of the view shows backs, before and after it, by
+// rays and lines of sight.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "exactff/slips.h"
+#include "slips/outlook.h"
 #include "slips/sight_lines.h"
 
 namespace exactff::slips {
@@ -21,9 +24,10 @@ struct FlipEffect {
   PairsInSight before, after;
   std::size_t lit_before = 0, lit_after = 0;  // pairs of which one emits
   bool stacks = false;                        // a front would lie on the front of another patch
+  bool shows_backs = false;                   // fronts would look at more backs
   bool is_complete = true;                    // false if the rays ran out
 
-  // Or may. Neither all pairs nor those of different patches may become fewer.
+  // Or may. Neither all pairs nor those of different patches may become fewer, and no more backs may be seen.
   [[nodiscard]] bool darkens() const;
   [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> gained() const;  // of different patches
   [[nodiscard]] bool helps() const { return !darkens() && !gained().empty(); }
@@ -41,8 +45,6 @@ class FlipTrials {
   [[nodiscard]] std::vector<Selection> useful_flips(std::span<const Selection> selections);
 
  private:
-  using Flipped = std::vector<bool>;  // by face
-
   [[nodiscard]] std::size_t patch_of(std::uint32_t piece) const;
   [[nodiscard]] Vec3 front_of(std::uint32_t piece, const Flipped& flipped) const;
   void look(std::size_t patch, const Flipped& flipped, PairsInSight& pairs);
@@ -53,6 +55,7 @@ class FlipTrials {
   void follow(std::size_t patch, const Vec3& from, const Vec3& direction, double limit, const Flipped& flipped,
               PairsInSight& pairs);
   [[nodiscard]] std::size_t lit(const PairsInSight& pairs) const;
+  [[nodiscard]] bool shows_more_backs(const Flipped& as_they_are, const Flipped& flipped);
   [[nodiscard]] bool is_on_a_front(std::uint32_t piece, const Flipped& flipped) const;
 
   const Scene& scene_;
@@ -61,6 +64,7 @@ class FlipTrials {
   std::vector<std::uint32_t> ends_;                 // of lines
   std::vector<bool> emits_;                         // by patch
   std::uint64_t rays_ = 0;
+  std::optional<Outlook> outlook_;  // made when it is needed
 };
 
 }  // namespace exactff::slips

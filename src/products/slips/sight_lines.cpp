@@ -7,12 +7,6 @@
 
 namespace exactff::slips {
 
-namespace {
-
-constexpr double kSamePlace = 1e-9;  // of the scene's diameter
-
-}  // namespace
-
 using kernel::along;
 using kernel::cross;
 using kernel::difference;
@@ -21,7 +15,7 @@ using kernel::unit;
 
 namespace {
 
-constexpr double kAtTheOrigin = 1e-9;  // of the scene's diameter
+constexpr double kSamePlace = 1e-9;  // of the scene's diameter
 
 }  // namespace
 
@@ -59,14 +53,24 @@ std::optional<double> SightLines::crossing(std::uint32_t piece, const Vec3& from
   const double speed = dot(normal, direction);
   const double t = height / speed;
   if (!(std::abs(height) > kSamePlace * diameter_) || !(t > 0.0) || !std::isfinite(t)) return std::nullopt;
-  const Vec3 point = along(from, direction, t);
+  return is_within_edges(piece, along(from, direction, t)) ? std::optional(t) : std::nullopt;
+}
+
+bool SightLines::is_within_edges(std::uint32_t piece, const Vec3& point) const {
+  const auto corners = scene_.corners(scene_.pieces()[piece]);
   const Vec3* previous = &scene_.vertices()[corners.back()];
   for (const std::uint32_t corner : corners) {
     const Vec3& next = scene_.vertices()[corner];
-    if (dot(normal, cross(difference(next, *previous), difference(point, *previous))) < 0.0) return std::nullopt;
+    if (dot(normals_[piece], cross(difference(next, *previous), difference(point, *previous))) < 0.0) return false;
     previous = &next;
   }
-  return t;
+  return true;
+}
+
+bool SightLines::holds(std::uint32_t piece, const Vec3& point) const {
+  const Vec3& corner = scene_.vertices()[scene_.corners(scene_.pieces()[piece]).front()];
+  return std::abs(dot(normals_[piece], difference(corner, point))) <= kSamePlace * diameter_ &&
+         is_within_edges(piece, point);
 }
 
 // Calls visit(piece, t) for each piece that the ray meets, in any order.
@@ -100,7 +104,7 @@ std::optional<Hit> SightLines::first_hit(const Vec3& from, const Vec3& direction
 }
 
 std::vector<Hit> SightLines::hits_in_sight(const Vec3& from, const Vec3& direction, double limit) const {
-  const double same = kAtTheOrigin * diameter_ / kernel::length(direction);
+  const double same = kSamePlace * diameter_ / kernel::length(direction);
   std::vector<Hit> hits;
   double end = limit;
   visit_crossings(from, direction, [&](std::uint32_t piece, double t) {

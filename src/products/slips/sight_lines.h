@@ -34,6 +34,8 @@ class SightLines {
   [[nodiscard]] double diameter() const { return diameter_; }
   // Of the piece's front, of length 1.
   [[nodiscard]] const Vec3& normal(std::uint32_t piece) const { return normals_[piece]; }
+  // Whether a point lies on the piece, within a rounding.
+  [[nodiscard]] bool holds(std::uint32_t piece, const Vec3& point) const;
   // Points inside the piece: its centre, and points near its corners.
   [[nodiscard]] std::vector<Vec3> points_of(std::uint32_t piece) const;
 
@@ -49,6 +51,7 @@ class SightLines {
   template <class Visit>
   void visit_crossings(const Vec3& from, const Vec3& direction, const Visit& visit) const;
   [[nodiscard]] std::optional<double> crossing(std::uint32_t piece, const Vec3& from, const Vec3& direction) const;
+  [[nodiscard]] bool is_within_edges(std::uint32_t piece, const Vec3& point) const;
 
   const Scene& scene_;
   std::vector<Vec3> normals_;

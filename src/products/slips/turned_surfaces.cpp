@@ -1,6 +1,6 @@
 // Closed surfaces that are turned the wrong way. One whose fronts look inward may be a room or the wall of a hollow in
 // a solid; a box that stands among other things is neither. A room that stands beside a few other faces is told from a
-// box by what a flip would change. And a room whose fronts look outward shows only backs to what stands in it.
+// box by what a flip would change.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -22,9 +22,8 @@ using kernel::cross;
 using kernel::difference;
 using kernel::dot;
 
-constexpr std::size_t kMostRooms = 8;                 // to be tried: flips share a limited number of rays
 constexpr std::size_t kMostPoints = 32;               // to be looked for inside a surface
-constexpr std::uint64_t kMostTriangles = 20'000'000;  // in all solid angles of boxes, and of rooms: about a second
+constexpr std::uint64_t kMostTriangles = 20'000'000;  // in all solid angles: about a second
 
 double length(const Vec3& v) { return std::hypot(v.x, v.y, v.z); }
 
@@ -65,16 +64,6 @@ class TurnedSurfaces {
     return found;
   }
 
-  // The first few that look outward and enclose something.
-  std::vector<std::uint32_t> rooms() {
-    triangles_ = 0;  // whatever the boxes took
-    std::vector<std::uint32_t> found;
-    for (std::uint32_t s = 0; s < pieces_.size() && found.size() < kMostRooms; ++s) {
-      if (!found_.surfaces()[s].turned_inside_out && encloses_anything(s)) found.push_back(s);
-    }
-    return found;
-  }
-
   [[nodiscard]] std::vector<Selection> selections(std::span<const std::uint32_t> surfaces) const {
     std::vector<FaceId> faces;
     for (const std::uint32_t s : surfaces) {
@@ -87,17 +76,6 @@ class TurnedSurfaces {
   // more area than its own, comes into its sight.
   [[nodiscard]] bool are_better_turned(std::span<const std::uint32_t> boxes, const FlipEffect& effect) const {
     return effect.helps() && (effect.lit_after > effect.lit_before || gains_area(boxes, effect));
-  }
-
-  // Nothing else sees its fronts now, and something does once it is turned.
-  [[nodiscard]] bool is_better_turned(std::uint32_t room, const FlipEffect& effect) const {
-    std::set<std::size_t> own;
-    for (const std::uint32_t piece : pieces_[room]) {
-      own.insert(index_of(scene_.face(scene_.pieces()[piece].face).patch));
-    }
-    const auto is_of_others = [&](const auto& pair) { return !own.contains(pair.first) || !own.contains(pair.second); };
-    return effect.helps() && std::ranges::none_of(effect.before, is_of_others) &&
-           std::ranges::any_of(effect.after, is_of_others);
   }
 
  private:
@@ -190,23 +168,28 @@ std::vector<std::uint32_t> boxes_to_turn(TurnedSurfaces& surfaces, FlipTrials& t
                                                                                    : std::vector<std::uint32_t>();
 }
 
-Finding finding_of(const Scene& scene, Kind kind, const TurnedSurfaces& surfaces,
-                   const std::vector<std::uint32_t>& found, const std::string& what, const std::string& why) {
-  Finding finding{.kind = kind, .objects = surfaces.selections(found)};
+Finding finding_of(const Scene& scene, const TurnedSurfaces& surfaces, const std::vector<std::uint32_t>& boxes) {
+  Finding finding{.kind = Kind::kInwardSurface, .objects = surfaces.selections(boxes)};
   finding.flag = flag_to_flip(scene, finding.objects);
-  finding.words = {
-      .what = text::counted(found.size(), "closed surface") + ' ' + what + ": " + listed(scene, finding.objects),
-      .why = why,
-      .suggestion = words_to_flip(scene, finding.objects)};
+  finding.words = {.what = text::counted(boxes.size(), "closed surface") +
+                           (boxes.size() == 1 ? " looks inward and encloses" : " look inward and enclose") +
+                           " no other face: " + listed(scene, finding.objects),
+                   .why = "its outer side is its back, which emits nothing and receives nothing",
+                   .suggestion = words_to_flip(scene, finding.objects)};
   return finding;
 }
 
-std::vector<std::uint32_t> rooms_to_turn(TurnedSurfaces& surfaces, FlipTrials& trials) {
-  std::vector<std::uint32_t> rooms = surfaces.rooms();
-  std::erase_if(rooms, [&](std::uint32_t room) {
-    return !surfaces.is_better_turned(room, trials.try_flip(surfaces.selections(std::span(&room, 1))));
-  });
-  return rooms;
+// All faces of `some`, and others. In a room of which walls look out, too, boxes are to be turned together with these.
+bool holds_more(const Scene& scene, std::span<const Selection> all, std::span<const Selection> some) {
+  const auto faces_of = [&](std::span<const Selection> selections) {
+    std::set<FaceId> faces;
+    for (const Selection& one : selections) {
+      for (const FaceId face : scene.faces_of(one)) faces.insert(face);
+    }
+    return faces;
+  };
+  const std::set<FaceId> more = faces_of(all), fewer = faces_of(some);
+  return more.size() > fewer.size() && std::ranges::includes(more, fewer);
 }
 
 }  // namespace
@@ -215,19 +198,15 @@ std::vector<Finding> turned_surfaces(const Scene& scene, FlipTrials& trials) {
   TurnedSurfaces surfaces(scene);
   std::vector<Finding> findings;
   const std::vector<std::uint32_t> boxes = boxes_to_turn(surfaces, trials);
+  std::optional<Finding> rooms = outward_rooms(scene, {});
   if (!boxes.empty()) {
-    findings.push_back(finding_of(
-        scene, Kind::kInwardSurface, surfaces, boxes,
-        boxes.size() == 1 ? "looks inward and encloses no other face" : "look inward and enclose no other face",
-        "its outer side is its back, which emits nothing and receives nothing"));
+    Finding finding = finding_of(scene, surfaces, boxes);
+    if (!rooms || !holds_more(scene, rooms->objects, finding.objects)) {
+      rooms = outward_rooms(scene, finding.objects);
+      findings.push_back(std::move(finding));
+    }
   }
-  const std::vector<std::uint32_t> rooms = rooms_to_turn(surfaces, trials);
-  if (!rooms.empty()) {
-    findings.push_back(finding_of(scene, Kind::kOutwardRoom, surfaces, rooms,
-                                  rooms.size() == 1 ? "looks outward, and all that sees it stands in it"
-                                                    : "look outward, and all that sees them stands in them",
-                                  "its inner side is its back, which emits nothing and receives nothing"));
-  }
+  if (rooms) findings.push_back(std::move(*rooms));
   return findings;
 }
 

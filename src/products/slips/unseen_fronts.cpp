@@ -4,8 +4,7 @@
 //   1. rays from a few of its points into the half-space before them;
 //   2. lines from its points to points of the faces before it, which finds small things that the rays miss.
 // The first face on a ray or line sees the patch if it shows its front. A patch that looks at the backs of others only
-// is reported unless one of these is itself a patch before which nothing lies, or of a closed surface that is turned
-// the wrong way: then that one is the likely slip.
+// is reported unless one of these is itself a patch before which nothing lies: then that one is the likely slip.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -150,7 +149,7 @@ std::vector<bool> closed_patches(const Scene& scene) {
   return closed;
 }
 
-Unseen find_unseen(const Scene& scene, std::span<const Selection> turned_objects) {
+Unseen find_unseen(const Scene& scene) {
   Unseen unseen;
   FrontFinder finder(scene);
   if (!finder.usable()) return unseen;
@@ -158,8 +157,6 @@ Unseen find_unseen(const Scene& scene, std::span<const Selection> turned_objects
   std::vector<bool> emits(count, false), lonely(count, false);
   for (const Selection& emitter : scene.emitters()) emits[index_of(emitter.patch)] = true;
   const std::vector<bool> closed = closed_patches(scene);
-  std::vector<bool> turned(count, false);  // their backs are where their fronts should be
-  for (const Selection& one : turned_objects) turned[index_of(one.patch)] = true;
   std::vector<std::size_t> order;  // emitters first
   for (const bool emitting : {true, false}) {
     for (std::size_t p = 0; p < count; ++p) {
@@ -178,7 +175,7 @@ Unseen find_unseen(const Scene& scene, std::span<const Selection> turned_objects
   for (std::size_t i = 0; i < fronts.size(); ++i) {
     const Selection patch{static_cast<PatchId>(order[i]), {}, scene.id()};
     const bool emitter = emits[order[i]];
-    const auto to_blame = [&](std::size_t other) { return lonely[other] || turned[other]; };
+    const auto to_blame = [&](std::size_t other) { return lonely[other]; };
     if (lonely[order[i]]) {
       (emitter ? unseen.emitters : unseen.patches).push_back(patch);
     } else if (!emitter && !fronts[i].seen && std::ranges::none_of(fronts[i].backs, to_blame)) {
@@ -201,10 +198,10 @@ std::string suggestion(const Scene& scene, std::span<const Selection> objects, s
 
 }  // namespace
 
-std::vector<Finding> unseen_fronts(const Scene& scene, std::span<const Selection> turned_objects, FlipTrials& trials) {
+std::vector<Finding> unseen_fronts(const Scene& scene, FlipTrials& trials) {
   std::vector<Finding> findings;
   if (scene.patches().size() < 2) return findings;
-  const Unseen unseen = find_unseen(scene, turned_objects);
+  const Unseen unseen = find_unseen(scene);
   const std::string limit = unseen.looked_at == unseen.to_look_at
                                 ? std::string()
                                 : ", among the first " + std::to_string(unseen.looked_at) + " of " +

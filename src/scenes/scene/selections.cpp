@@ -12,6 +12,19 @@ bool emits(const Scene& scene, const Selection& selection) {
   return std::ranges::any_of(faces, [&](FaceId id) { return scene.material(scene.face(id).material).emits(); });
 }
 
+bool has_patch(const Scene& scene, std::string_view name) {
+  return std::ranges::any_of(scene.patches(), [&](const Patch& patch) { return patch.name == name; });
+}
+
+std::vector<Selection> all_patches(const Scene& scene) {
+  std::vector<Selection> patches;
+  for (std::size_t p = 0; p < scene.patches().size(); ++p) {
+    const Selection patch{static_cast<PatchId>(p), {}, scene.id()};
+    if (!scene.faces_of(patch).empty()) patches.push_back(patch);
+  }
+  return patches;
+}
+
 std::vector<Selection> selections_of(const Scene& scene, std::vector<FaceId> faces) {
   std::erase_if(faces, [&](FaceId id) { return scene.face(id).piece_count == 0; });
   const auto key = [&](FaceId id) { return std::pair(scene.face(id).patch, id); };
@@ -32,7 +45,7 @@ std::vector<Selection> selections_of(const Scene& scene, std::vector<FaceId> fac
 }
 
 std::string flag_words(const Scene& scene, std::string_view flag, std::span<const Selection> selections) {
-  constexpr std::size_t kMostTyped = 24;
+  constexpr std::size_t kMostTyped = 64;
   if (selections.empty() || selections.size() > kMostTyped) return {};
   std::string words, list;
   const auto add = [&](const std::string& value) {

@@ -13,6 +13,10 @@ namespace exactff {
 // Whether a face with area has a Ke other than 0. A source without counts with a radiosity of 1 where it is named.
 [[nodiscard]] bool emits(const Scene& scene, const Selection& selection);
 
+[[nodiscard]] bool has_patch(const Scene& scene, std::string_view name);
+// Those with area.
+[[nodiscard]] std::vector<Selection> all_patches(const Scene& scene);
+
 // The faces as selections: a patch if all its faces with area are among them, else its faces. In the order of the
 // scene, each once. `faces` without area are left out.
 [[nodiscard]] std::vector<Selection> selections_of(const Scene& scene, std::vector<FaceId> faces);
