@@ -101,9 +101,13 @@ class View {
 // The camera and size as flags of exactff render.
 [[nodiscard]] std::string flags_of(const View& view);
 
+// The axis that probably points upwards: z if more area of fronts looks along +z, as floors do, than along +y; else y.
+// A front looks along an axis within two degrees. An estimate.
+[[nodiscard]] Vec3 upwards(const Scene& scene);
+
 // What a default camera is to have.
 struct CameraWishes {
-  Vec3 up{0.0, 1.0, 0.0};
+  Vec3 up{};                       // zero: upwards()
   std::optional<double> fov = {};  // empty: that of Camera, and a wide angle inside a closed room
   std::optional<double> ortho = {};
 };

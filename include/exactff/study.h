@@ -83,6 +83,7 @@ struct Request {
   double sweep_budget = 25.0;       // seconds for all settings of the adaptive algorithm, as for MethodSweep::budget
   double seconds_for_a_time = 0.1;  // approximate seconds spent on timing one setting
   std::optional<render::Camera> camera = {};  // of the report's pictures; empty: one that shows the scene
+  std::optional<Vec3> up = {};                // in the pictures of the latter; empty: render::upwards()
 };
 
 inline constexpr double kNotTimed = std::numeric_limits<double>::quiet_NaN();

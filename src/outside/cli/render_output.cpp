@@ -124,15 +124,14 @@ void write_files(const RenderFiles& files, const Rendered& rendered) {
   write_whole_file(files.image, image);
 }
 
-void print_rendered(const render::Request& request, const Rendered& rendered, const RenderFiles& files,
-                    bool tell_camera) {
+void print_rendered(const Rendered& rendered, const RenderFiles& files, const std::string& camera) {
   const render::Picture& picture = rendered.picture;
   std::cout << picture.size.width << " x " << picture.size.height << " pixels: " << words_of_pixels(picture) << '\n';
   std::cout << "computed in " << took(picture) << " of processor time";
   if (rendered.judged && is_computed(*rendered.judged))
     std::cout << ", " << text::printable(rendered.judged_name) << " in " << took(*rendered.judged);
   std::cout << '\n';
-  if (tell_camera) std::cout << "camera: " << render::flags_of(request.view) << '\n';
+  if (!camera.empty()) std::cout << "camera: " << camera << '\n';
   if (rendered.errors) {
     const render::Errors& errors = *rendered.errors;
     std::cout << "errors: " << error_words(errors) << "; relative: median "

@@ -27,8 +27,7 @@ struct RenderFiles {
 void write_files(const RenderFiles& files, const Rendered& rendered);
 
 // The summary on standard output. `tell_camera`: the camera was chosen by the program.
-void print_rendered(const render::Request& request, const Rendered& rendered, const RenderFiles& files,
-                    bool tell_camera);
+void print_rendered(const Rendered& rendered, const RenderFiles& files, const std::string& camera);
 
 // Returns the exit code: 3, with a message, if a value is not certified.
 [[nodiscard]] int warn_of_uncertified_points(const Rendered& rendered);

@@ -17,8 +17,8 @@ struct CameraArguments {
   void add_to(CLI::App& app, const std::string& eye_meaning, const std::string& look_meaning);
   // Whether --eye and --look are given. Throws InputError if only one of them is.
   [[nodiscard]] bool is_placed() const;
-  // Requires both.
-  [[nodiscard]] render::Camera camera() const;
+  // Requires both. Without --up, render::upwards(scene) points upwards or, in a view along it, the other axis.
+  [[nodiscard]] render::Camera camera(const Scene& scene) const;
   [[nodiscard]] render::CameraWishes wishes() const;
 };
 

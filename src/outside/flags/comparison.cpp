@@ -160,9 +160,9 @@ study::MethodSweep methods_of(const ComparisonArguments& args) {
 }
 
 // Refused before anything is computed, not when the pictures are made.
-std::optional<render::Camera> camera_of(const CameraArguments& args) {
+std::optional<render::Camera> camera_of(const CameraArguments& args, const Scene& scene) {
   if (!args.is_placed()) return std::nullopt;
-  const render::Camera camera = args.camera();
+  const render::Camera camera = args.camera(scene);
   (void)render::View(camera, {4, 3});
   return camera;
 }
@@ -203,7 +203,6 @@ Comparison comparison_of(ComparisonArguments args, bool abridged, int threads) {
   check_receiver_options(args.receivers);
   check_effects(args);
   check_standard_input(args.scene, args.receivers);
-  const std::optional<render::Camera> camera = camera_of(args.camera);
   Comparison comparison;
   study::Request& request = comparison.request;
   request.sweeps = sweeps_of(args);
@@ -215,7 +214,8 @@ Comparison comparison_of(ComparisonArguments args, bool abridged, int threads) {
   request.sources = sources_of(args.sources, *comparison.scene);
   request.engine = args.engine.engine();
   request.threads = threads;
-  request.camera = camera;
+  request.camera = camera_of(args.camera, *comparison.scene);
+  if (!request.camera && is_given(args.camera.up)) request.up = args.camera.wishes().up;
   ChosenReceivers chosen = receivers_of(args.receivers, *comparison.scene);
   comparison.warnings = warnings_of_receivers(chosen);
   request.receivers = std::move(chosen.receivers);
@@ -298,7 +298,7 @@ void ComparisonArguments::add_to(CLI::App& app) {
   engine.add_to(app);
   camera.add_to(app, "Pictures in the report: where the camera stands (default: where it shows the whole scene)",
                 "The point that it looks at");
-  for (const char* flag : {"--up", "--fov"}) app.get_option(flag)->needs(app.get_option("--eye"));
+  app.get_option("--fov")->needs(app.get_option("--eye"));
   app.add_option("--title", title, "Name of the scene in the report")->type_name("TEXT");
   app.add_flag("--unless-abridged", unless_abridged, "Leave this scene out of abridged reports");
 }

@@ -193,10 +193,23 @@ void look_from_inside(const Scene& scene, const Extents& box, const Camera& like
 
 }  // namespace
 
+Vec3 upwards(const Scene& scene) {
+  const kernel::StandardArithmetic arithmetic;
+  constexpr double kCosOfTwoDegrees = 0.9994;
+  double along_y = 0.0, along_z = 0.0;
+  for (const Face& face : scene.faces()) {
+    if (face.piece_count == 0) continue;
+    const Vec3 front = kernel::unit(face.newell);
+    if (front.y > kCosOfTwoDegrees) along_y += face.area;
+    if (front.z > kCosOfTwoDegrees) along_z += face.area;
+  }
+  return along_z > along_y ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
+}
+
 Camera default_camera(const Scene& scene, const CameraWishes& wishes, const Size& size) {
   const kernel::StandardArithmetic arithmetic;
   Camera like;  // the given numbers are refused with words, not left out of the search
-  like.up = wishes.up;
+  like.up = wishes.up == Vec3{} ? upwards(scene) : wishes.up;
   like.fov = wishes.fov.value_or(like.fov);
   like.ortho = wishes.ortho;
   const Vec3 across = cross(like.up, Vec3{1, 0, 0});

@@ -60,6 +60,7 @@ class Identity {
     add(request.sweep_budget);
     add(request.seconds_for_a_time);
     if (request.camera) add(*request.camera);  // without one, reports keep the identity that earlier builds gave them
+    if (request.up) hash_.add(*request.up);    // likewise
   }
 
   [[nodiscard]] std::string digits() const { return hash_.digits(); }

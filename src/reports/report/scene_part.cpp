@@ -89,7 +89,8 @@ class ScenePart {
     text_ += "</div>\n<figcaption>" +
              (strip.outlined.empty() ? "The receivers’ patch is not in the picture."
                                      : "Green outline: the receivers’ patch, " + text::html(strip.outlined) + ".") +
-             " Black outline: regions that are mostly wrong by over 10 %.</figcaption>\n</figure>\n";
+             " Black outline: regions that are mostly wrong by over 10 %. Camera: <code>" + text::html(strip.camera) +
+             "</code>.</figcaption>\n</figure>\n";
   }
 
   // The figure of error against time that stands beside the table.

@@ -47,12 +47,6 @@ std::optional<render::Size> affordable_size(double seconds_per_pixel) {
   return size;
 }
 
-// Floors lie level in the picture, whichever axis the scene points upwards.
-Vec3 upwards(const Study& study) {
-  const Vec3& normal = study.request.receivers.front().normal;
-  return std::abs(normal.z) > std::max(std::abs(normal.x), std::abs(normal.y)) ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
-}
-
 std::set<PatchId> patches_of_receivers(const Study& study) {
   std::set<PatchId> patches;
   for (const Receiver& receiver : study.request.receivers) {
@@ -176,7 +170,9 @@ std::string names_of(const Scene& scene, const std::set<PatchId>& patches) {
 std::optional<Strip> draw_strip(const Study& study, const Shown& shown, const render::Size& size, const Hooks& hooks) {
   render::Request request{.scene = study.request.scene};
   const std::optional<render::Camera>& given = study.request.camera;
-  const auto chosen = [&] { return render::default_camera(*study.request.scene, {.up = upwards(study)}, size); };
+  const auto chosen = [&] {
+    return render::default_camera(*study.request.scene, {.up = study.request.up.value_or(Vec3{})}, size);
+  };
   request.view = render::View(given ? *given : chosen(), size);
   request.sources = study.request.sources;
   request.threads = study.request.threads;
@@ -205,6 +201,7 @@ std::optional<Strip> draw_strip(const Study& study, const Shown& shown, const re
       .error = png(render::coloured(errors, size, scale)),
       .method_name = shown.name,
       .is_base = !study.settings.empty() && shown.choice.method->name == "adaptive",
+      .camera = render::flags_of(request.view),
       .outlined = names_of(*study.request.scene, membership.seen()),
       .scale = scale / brightest,
       .rms = errors.rms / brightest,

@@ -15,6 +15,7 @@ struct Strip {
   std::string exact, method, error;
   std::string method_name;
   bool is_base = false;  // the base setting of the sweeps
+  std::string camera;    // as flags of exactff compare
   std::string outlined;  // the patches of the receivers; empty if they are not in the picture
   double scale = 0.0;    // the error of full colour, relative to the brightest pixel
   double rms = 0.0;      // relative to the brightest pixel

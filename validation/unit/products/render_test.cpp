@@ -13,6 +13,7 @@
 #include "exactff/scene_files.h"
 #include "exactff/view.h"
 #include "generate/plain_scene.h"
+#include "models/room_parts.h"
 #include "support/complaint.h"
 #include "support/program.h"
 
@@ -328,7 +329,7 @@ TEST(DefaultCamera, LooksIntoTheOpenSide) {
 // Doubles of the first version. Images by the default camera keep their bytes.
 TEST(DefaultCamera, OfScenesThatAreNoClosedRoomsStaysAsItWas) {
   const auto expect_camera = [](const Scene& scene, const Vec3& eye, const Vec3& look) {
-    const Camera camera = default_camera(scene, {}, {8, 6});
+    const Camera camera = default_camera(scene, {.up = {0, 1, 0}}, {8, 6});
     EXPECT_EQ(camera.eye, eye);
     EXPECT_EQ(camera.look, look);
     EXPECT_EQ(camera.up, (Vec3{0, 1, 0}));
@@ -341,6 +342,23 @@ TEST(DefaultCamera, OfScenesThatAreNoClosedRoomsStaysAsItWas) {
   expect_camera(models::make_scene("mesh"), {0, 2.413638467820515, -1.913638467820515}, {0, 0, 0.5});
   expect_camera(models::make_scene("lattice"), {0.125, -3.0411012904273527, -2.7598512904273527},
                 {0.125, 0.203125, 0.484375});
+}
+
+// A room of 4 x 5 x 2.8, z upwards, and the same with y upwards.
+TEST(DefaultCamera, HasTheAxisUpAlongWhichTheFloorLooks) {
+  generate::PlainScene z_up;
+  models::add_box(z_up, "room", {{0, 0, 0}, {4, 5, 2.8}});
+  for (models::PlainFace& face : z_up.patch("room").faces) std::ranges::reverse(face.rings.front());
+  models::add_box(z_up, "table", {{1, 1, 0}, {2, 3, 0.75}});
+  generate::PlainScene y_up = z_up;
+  for (Vec3& v : y_up.vertices) v = {v.x, v.z, -v.y};
+  EXPECT_EQ(upwards(generate::build(z_up)), (Vec3{0, 0, 1}));
+  EXPECT_EQ(upwards(generate::build(y_up)), (Vec3{0, 1, 0}));
+  EXPECT_EQ(upwards(cornell_box()), (Vec3{0, 1, 0}));
+  EXPECT_EQ(upwards(models::make_scene("teapot")), (Vec3{0, 0, 1}));
+  const Scene scene = generate::build(z_up);
+  EXPECT_EQ(default_camera(scene, {}, {8, 6}).up, (Vec3{0, 0, 1}));
+  EXPECT_EQ(default_camera(scene, {.up = {0, 1, 0}}, {8, 6}).up, (Vec3{0, 1, 0}));
 }
 
 struct Shown {
