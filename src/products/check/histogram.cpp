@@ -76,9 +76,10 @@ std::string histogram_script(const Report& report) {
   const Histogram shown = histogram(report, kBinsPerDecade, kMostBins);
   std::vector<page::Bar> bars;
   for (const HistogramBin& bin : shown.bins) bars.push_back({bin.low, bin.high, static_cast<double>(bin.count)});
-  const std::string rows = text::counted(report.overall.rows, "row") +
-                           (shown.exact > 0 ? ", " + std::to_string(shown.exact) + " of them without error" : "");
-  return page::bar_plot({"absolute error", rows, true, false}, bars, limits(report));
+  const std::string exact =
+      shown.exact > 0 ? " (not shown: " + text::counted(shown.exact, "row") + " without error)" : "";
+  const std::string rows = "of " + text::counted(report.overall.rows, "row");  // short: the axis is not long
+  return page::bar_plot({"absolute error" + exact, rows, true, false}, bars, limits(report));
 }
 
 Plot plot_histogram(const Report& report, const std::function<bool()>& cancelled) {

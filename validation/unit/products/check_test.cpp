@@ -231,7 +231,7 @@ TEST(ErrorHistogram, GathersWhatIsFarBelowInItsFirstBin) {
 TEST(ErrorHistogram, IsAScriptUnlessNothingIsToBeSeen) {
   const std::string script = histogram_script(judged({0.0, 0.0}, {0.5, 0.0}, {.max_abs = 0.25}));
   EXPECT_HOLDS(script, "set arrow from 0.25, graph 0");
-  EXPECT_HOLDS(script, "2 rows, 1 of them without error");
+  EXPECT_HOLDS(script, "absolute error (not shown: 1 row without error)");
   EXPECT_EQ(histogram_script(judged({0.5}, {0.5})), "");
 }
 
