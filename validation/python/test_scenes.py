@@ -139,7 +139,7 @@ def test_a_lamp_that_looks_away_is_found_and_turned():
     assert right.flipped == ("lamp",) and not right.report().findings and right.fronts[0].tolist() == [0, 0, -1]
     at = ([0, 0, 0], [0, 0, 1])
     assert wrong.form_factors(*at, on="floor") == 0 < right.form_factors(*at, on="floor")
-    assert wrong.with_flipped() is wrong
+    assert wrong.with_flipped() is wrong and wrong.with_flipped("all").flipped == ("lamp", "floor")
 
 
 def test_names_and_indices():
