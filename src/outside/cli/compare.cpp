@@ -1,6 +1,8 @@
 // exactff compare: compares approximate methods with the exact values, as tables and a report.
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -185,6 +187,7 @@ void print_warnings_of(const report::PlannedScene& planned, bool several) {
   print_warnings(planned.warnings);
   print_near_misses(*planned.scene, request.receivers);
   std::vector<Problem> dark = slips::warnings_of_dark_sources(*planned.scene, request.receivers, request.sources);
+  std::ranges::move(slips::warnings_of_turned_surfaces(*planned.scene), std::back_inserter(dark));
   for (Problem& warning : dark) {
     if (several) warning.what = planned.title + ": " + warning.what;
   }

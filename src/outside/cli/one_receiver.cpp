@@ -1,10 +1,14 @@
 #include "cli/one_receiver.h"
 
+#include <algorithm>
 #include <iostream>
 #include <span>
 
 #include "cli/output.h"
+#include "exactff/render.h"
+#include "exactff/slips.h"
 #include "flags/receivers.h"
+#include "kernel/vec.h"
 #include "text/escape.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
@@ -39,6 +43,24 @@ void warn_of_own_face(const Scene& scene, const Receiver& receiver) {
   }
 }
 
+// The first face in the direction of the normal, if the receiver looks at its back, squarely.
+void warn_of_face_before(const Scene& scene, const Receiver& receiver,
+                         const std::function<std::string(const Receiver&)>& effect) {
+  constexpr double kCosOfOneDegree = 0.99984;
+  const auto hit = render::first_hit(scene, {receiver.point, kernel::unit(receiver.normal)});
+  if (!hit || !hit->back) return;
+  const Vec3 front = kernel::unit(scene.face(hit->face).newell);
+  if (kernel::dot(front, kernel::unit(receiver.normal)) < kCosOfOneDegree) return;
+  const std::string change = effect({hit->point, receiver.normal, {hit->face}, ""});
+  if (change.empty()) return;
+  const std::string name = scene.name_of(hit->face);
+  std::cerr << "exactff: warning: x lies " << text::short_number(kernel::distance(hit->point, receiver.point), 2)
+            << " behind '" << text::printable(name) << "' and sees nothing but backs. On it, with --at";
+  for (const double coordinate : {hit->point.x, hit->point.y, hit->point.z})
+    std::cerr << ' ' << text::shortest(coordinate);
+  std::cerr << " --on " << text::shell_word(name) << ", " << change << '\n';
+}
+
 }  // namespace
 
 void OneReceiver::add_to(CLI::App& app) {
@@ -58,6 +80,16 @@ Receiver OneReceiver::make(const Scene& scene) const {
   return receiver;
 }
 
+void warn_of_turned_surfaces(const Scene& scene) {
+  constexpr std::size_t kMostFaces = 10'000;
+  if (scene.faces().size() <= kMostFaces) print_warnings(slips::warnings_of_turned_surfaces(scene));
+}
+
+bool sees_only_backs(const WholeView& seen) {
+  const auto is_nothing = [](const SeenPatch& patch) { return patch.share.status == Status::kZero; };
+  return std::ranges::all_of(seen.patches, is_nothing) && seen.back.status != Status::kZero;
+}
+
 void warn_if_off_its_face(const Scene& scene, const Receiver& receiver) {
   constexpr double kFar = 0.01;
   if (receiver.on.empty()) return;
@@ -69,18 +101,26 @@ void warn_if_off_its_face(const Scene& scene, const Receiver& receiver) {
                "--on\n";
 }
 
-void warn_of_near_face(const Scene& scene, const Receiver& receiver,
-                       const std::function<std::string(const std::vector<FaceId>&)>& effect) {
+void warn_of_near_face(const Scene& scene, const Receiver& receiver, const std::function<bool()>& sees_no_front,
+                       const std::function<std::string(const Receiver&)>& effect) {
   if (!receiver.on.empty()) return warn_of_own_face(scene, receiver);
   const NearFaces near = find_faces(scene, receiver, face_tolerance(scene, receiver.point));
-  if (near.faces.empty() || near.side == 0) return;
+  if (near.faces.empty()) {
+    if (sees_no_front()) warn_of_face_before(scene, receiver, effect);
+    return;
+  }
+  if (near.side == 0) return;
   const std::string name = scene.name_of(near.faces);
   const bool looks_through = (near.side < 0) != near.turned;
+  Receiver there = receiver;
+  there.on = near.faces;
+  const std::string change = effect(there);
   std::cerr << "exactff: " << (looks_through ? "warning" : "note") << ": x lies "
             << text::short_number(near.distance, 2) << (near.side < 0 ? " behind '" : " in front of '")
             << text::printable(name) << '\'' << (near.turned ? ", turned against its front" : "")
-            << (looks_through ? ", which then hides everything beyond it" : "") << ". With --on "
-            << text::shell_word(name) << ' ' << effect(near.faces) << '\n';
+            << (looks_through ? ", which then hides everything beyond it" : "");
+  if (!change.empty()) std::cerr << ". With --on " << text::shell_word(name) << ' ' << change;
+  std::cerr << '\n';
 }
 
 }  // namespace exactff::cli

@@ -125,6 +125,8 @@ int run(const CLI::App& command, const PointArguments& args) {
   warn_if_off_its_face(scene, point.receiver);
   warn_of_near_face(scene, point);
   warn_if_flipped(scene, point);
+  const auto is_zero = [](const PointTerm& one) { return one.exact.status == Status::kZero; };
+  if (std::ranges::all_of(point.sources, is_zero)) warn_of_turned_surfaces(scene);
   warn_of_missing_decimals(args, scene, point);
   warn_of_stopped_recursion(scene, point);
   if (!args.svg.empty()) draw_point(args, scene, point);

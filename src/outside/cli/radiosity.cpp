@@ -29,6 +29,7 @@
 #include "flags/scene.h"
 #include "radiosity/narrowing.h"
 #include "radiosity/on_faces.h"
+#include "scene/selections.h"
 #include "text/interval.h"
 #include "text/json_document.h"
 #include "text/number_text.h"
@@ -300,13 +301,12 @@ void check_outputs(const RadiosityArguments& args) {
   check_output_files({{"--vtk", args.vtk}}, may_replace);
 }
 
-void warn_of_darkness(const Scene& scene, const std::vector<Selection>& patches) {
-  const bool any_emits = std::ranges::any_of(patches, [&](const Selection& patch) {
-    return scene.material(scene.face(scene.faces_of(patch).front()).material).emits();
-  });
+// Before anything is computed.
+void require_light(const RadiosityArguments& args, const Scene& scene, const std::vector<Selection>& patches) {
+  const bool any_emits = std::ranges::any_of(patches, [&](const Selection& patch) { return emits(scene, patch); });
   if (any_emits) return;
-  print_warnings(std::vector<Problem>{
-      {.what = "no patch emits light", .why = "every radiosity is 0", .suggestion = "give some material a Ke"}});
+  text::refuse(std::filesystem::path(args.scene.path), "no patch emits light", "every radiosity would be 0",
+               "give some material a Ke; for view factors alone, use exactff matrix");
 }
 
 void warn_of_no_bound(const Solution& solution) {
@@ -507,7 +507,7 @@ int run(const RadiosityArguments& given) {
   const Scene scene = load(args.scene, args.two_sided);
   if (args.resume && args.is_complete()) return finish_again(args, scene);
   const std::vector<Selection> patches = radiosity::patches_of(scene);
-  warn_of_darkness(scene, patches);
+  require_light(args, scene, patches);
   if (std::optional<Problem> overlaps = problem_of_overlaps(scene, patches)) {
     print_warnings(std::vector<Problem>{std::move(*overlaps)});
   }

@@ -14,6 +14,7 @@
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/render_output.h"
+#include "exactff/slips.h"
 #include "flags/camera.h"
 #include "flags/engine.h"
 #include "flags/file_options.h"
@@ -93,8 +94,8 @@ render::Size size_of(const std::string& text) {
 }
 
 // The camera of --eye and --look.
-render::Camera placed_camera(const RenderArguments& args) {
-  render::Camera camera = args.camera.camera();
+render::Camera placed_camera(const RenderArguments& args, const Scene& scene) {
+  render::Camera camera = args.camera.camera(scene);
   camera.ortho = args.ortho;
   return camera;
 }
@@ -107,8 +108,8 @@ render::Camera default_camera(const RenderArguments& args, const Scene& scene, c
 
 // What can be refused before the scene is read.
 void check_arguments(const RenderArguments& args) {
-  const render::Size size = size_of(args.size);
-  if (args.camera.is_placed()) render::View(placed_camera(args), size);
+  (void)size_of(args.size);
+  (void)args.camera.is_placed();
   const render::ImageKind kind = render::image_kind(args.image);
   if (args.strip && args.against.empty()) {
     text::refuse("--strip is given without --against", "a strip shows a method beside the exact picture",
@@ -170,7 +171,8 @@ render::Request request_of(const RenderArguments& args, const flags::LitScene& l
   request.scene_name = args.scene.from_standard_input() ? std::string(flags::kStandardInput)
                                                         : std::filesystem::path(args.scene.path).filename().string();
   const render::Size size = size_of(args.size);
-  request.view = render::View(args.camera.is_placed() ? placed_camera(args) : default_camera(args, scene, size), size);
+  request.view =
+      render::View(args.camera.is_placed() ? placed_camera(args, scene) : default_camera(args, scene, size), size);
   flags::SourcesUnderSky sources = flags::sources_under_sky(args.sources, scene);
   request.sources = std::move(sources.sources);
   request.sky = sources.sky;
@@ -185,6 +187,15 @@ render::Request request_of(const RenderArguments& args, const flags::LitScene& l
   request.engine = args.engine.engine();
   request.threads = args.threads;
   return request;
+}
+
+// What the program has chosen; empty if that is nothing.
+std::string words_of_camera(const RenderArguments& args, const render::View& view) {
+  const bool chose_up = !flags::is_given(args.camera.up);
+  if (args.camera.is_placed() && !chose_up) return {};
+  const bool is_z = chose_up && view.camera().up == Vec3{0, 0, 1};
+  return render::flags_of(view) +
+         (is_z ? " (z points upwards, since more area of fronts looks along +z than along +y)" : "");
 }
 
 // The journal beside the image. A device has none. Its first record says to which image its tiles belong.
@@ -256,6 +267,7 @@ int run(const RenderArguments& args) {
   const Scene& scene = lit.scene;
   print_warnings(scene.warnings());
   print_hidden_faces(scene);
+  print_warnings(slips::warnings_of_turned_surfaces(scene));
   const render::Request request = with_progress([&] { return request_of(args, lit, method); });
   const std::string note = flags::note_on_sources_without_emission(scene, request.sources);
   if (!note.empty()) std::cerr << "note: " << text::printable(note) << '\n';
@@ -276,7 +288,7 @@ int run(const RenderArguments& args) {
     return 128 + interrupting_signal();
   }
   kept.done();
-  print_rendered(request, result, files, !args.camera.is_placed());
+  print_rendered(result, files, words_of_camera(args, request.view));
   check_output(std::cout);
   return warn_of_uncertified_points(result);
 }

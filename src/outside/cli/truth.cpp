@@ -130,6 +130,7 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const jobs::Team* team) 
 
 void tell_of_sources(const Job& job) {
   print_warnings(slips::warnings_of_dark_sources(job.scene, job.request.receivers, job.request.sources));
+  print_warnings(slips::warnings_of_turned_surfaces(job.scene));
   if (job.request.radiosities) return;  // light counts as it is in the file
   const std::string note = flags::note_on_sources_without_emission(job.scene, job.request.sources);
   if (!note.empty()) std::cerr << "note: " << text::printable(note) << '\n';

@@ -13,6 +13,7 @@
 #include "cli/output.h"
 #include "cli/point.h"
 #include "cli/text_table.h"
+#include "exactff/render.h"
 #include "exactff/scene_files.h"
 #include "exactff/version.h"
 #include "exactff/view.h"
@@ -207,8 +208,8 @@ void print_json(const ViewArguments& args, const Scene& scene, const Receiver& r
 
 // --- Files ---
 
-ViewPictureOptions picture_options(const ViewArguments& args) {
-  ViewPictureOptions options;
+ViewPictureOptions picture_options(const ViewArguments& args, const Scene& scene) {
+  ViewPictureOptions options{.up = render::upwards(scene)};
   if (args.projection == "fisheye") options.projection = ViewProjection::kFisheye;
   if (flags::is_given(args.up)) options.up = flags::vector_of(args.up, "--up");
   return options;
@@ -235,9 +236,29 @@ void write_mesh(const ViewArguments& args, const Scene& scene, const VisibilityM
 
 void write_files(const ViewArguments& args, const Scene& scene, const Receiver& receiver,
                  const std::optional<VisibilityMesh>& mesh) {
-  const std::string picture = args.svg.empty() ? "" : view_svg(scene, receiver, picture_options(args));
+  const std::string picture = args.svg.empty() ? "" : view_svg(scene, receiver, picture_options(args, scene));
   if (mesh) write_mesh(args, scene, *mesh);
   if (!args.svg.empty()) write_whole_file(args.svg, picture);
+}
+
+// "it sees 6 patches instead of 0", or the first share that differs. Empty if none does.
+std::string change_of_view(const Scene& scene, const WholeView& here, const WholeView& there) {
+  if (here.patches.size() != there.patches.size()) {
+    return "it sees " + text::counted(there.patches.size(), "patch", "patches") + " instead of " +
+           std::to_string(here.patches.size());
+  }
+  const auto change = [](const std::string& name, const ViewShare& a, const ViewShare& b) {
+    if (a.value == b.value) return std::string();
+    return name + " is " + text::short_number(b.value) + " instead of " + text::short_number(a.value);
+  };
+  std::vector<std::string> changes{change(kBack, here.back, there.back), change(kOpen, here.open, there.open)};
+  for (std::size_t p = 0; p < here.patches.size(); ++p) {
+    const SeenPatch &a = here.patches[p], &b = there.patches[p];
+    changes.push_back(a.patch == b.patch ? change('\'' + scene.patch(a.patch).name + '\'', a.share, b.share)
+                                         : "it sees '" + scene.patch(b.patch).name + "'");
+  }
+  const auto found = std::ranges::find_if(changes, [](const std::string& one) { return !one.empty(); });
+  return found == changes.end() ? std::string() : *found;
 }
 
 int run(const ViewArguments& args) {
@@ -252,13 +273,10 @@ int run(const ViewArguments& args) {
   if (!args.mesh.empty()) mesh = visibility_mesh(scene, receiver);
   write_files(args, scene, receiver, mesh);
   warn_if_off_its_face(scene, receiver);
-  warn_of_near_face(scene, receiver, [&](const std::vector<FaceId>& on) {
-    Receiver there = receiver;
-    there.on = on;
-    const WholeView other = view(scene, there, options);
-    return "it sees " + text::counted(other.patches.size(), "patch", "patches") + " instead of " +
-           std::to_string(seen.patches.size());
-  });
+  warn_of_near_face(
+      scene, receiver, [&] { return sees_only_backs(seen); },
+      [&](const Receiver& there) { return change_of_view(scene, seen, view(scene, there, options)); });
+  if (seen.back.status != Status::kZero) warn_of_turned_surfaces(scene);
   if (args.plain) {
     print_plain(args, scene, seen);
   } else if (args.json) {
@@ -315,7 +333,10 @@ void add_file_flags(CLI::App& app, ViewArguments& args) {
           ->type_name("FILE")
           ->check(flags::is_written(flags::Format::kMesh, flags::Beside::kMaterials));
   app.add_flag("--force", args.force, "Replace an existing file of --mesh")->needs(mesh);
-  flags::add_vector_option(app, "--up", args.up, "The direction that points upwards in the picture (default: 0 1 0)")
+  flags::add_vector_option(
+      app, "--up", args.up,
+      "The direction that points upwards in the picture (default: 0 0 1 if more area of fronts looks "
+      "along +z than along +y; else 0 1 0)")
       ->needs(svg);
 }
 

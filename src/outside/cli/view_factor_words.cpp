@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/output.h"
@@ -104,9 +105,19 @@ std::string what_helps(Limit limit, bool certify) {
 }  // namespace
 
 Scene load(const flags::SceneArguments& args, const std::vector<std::string>& two_sided) {
-  Scene scene = args.load();
+  flags::SceneArguments undivided = args;
+  const std::optional<double> length = std::exchange(undivided.divide, {});
+  Scene scene = undivided.load();
+  const auto with_backs = [&] { return matrix::with_two_sided(scene, flags::selections_named(scene, two_sided)); };
+  // Of a divided scene, names may be those of cells.
+  if (two_sided.empty()) {
+    print_warnings(slips::warnings_of_fronts(scene));
+  } else if (!length) {
+    print_warnings(slips::warnings_of_fronts(with_backs()));
+  }
+  if (length) scene = flags::divided_with_note(scene, *length);
   print_warnings(scene.warnings());
-  if (!two_sided.empty()) scene = matrix::with_two_sided(scene, flags::selections_named(scene, two_sided));
+  if (!two_sided.empty()) scene = with_backs();
   print_hidden_faces(scene);
   return scene;
 }

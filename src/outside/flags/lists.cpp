@@ -1,8 +1,14 @@
 #include "flags/lists.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
+#include "scene/selections.h"
+#include "text/nearest_names.h"
 #include "text/number_text.h"
+#include "text/refuse.h"
+#include "text/text_lines.h"
 
 namespace exactff::flags {
 namespace {
@@ -17,23 +23,29 @@ bool is_a_name(const Scene& scene, const std::string& text) {
   }
 }
 
-void add_all(const Scene& scene, std::vector<Selection>& selections) {
-  for (std::size_t p = 0; p < scene.patches().size(); ++p) {
-    const Selection whole{PatchId(static_cast<std::uint32_t>(p)), {}};
-    if (!scene.faces_of(whole).empty()) selections.push_back(whole);
-  }
-}
-
-bool means_all(const Scene& scene, const std::string& name) {
-  return name == "all" && std::ranges::none_of(scene.patches(), [&](const Patch& p) { return p.name == name; });
-}
+bool means_all(const Scene& scene, const std::string& name) { return name == "all" && !has_patch(scene, name); }
 
 void add(const Scene& scene, const std::string& name, std::vector<Selection>& selections) {
-  if (means_all(scene, name)) return add_all(scene, selections);
+  if (means_all(scene, name)) {
+    const std::vector<Selection> all = all_patches(scene);
+    selections.insert(selections.end(), all.begin(), all.end());
+    return;
+  }
   for (const Selection& part : scene.select_all(name)) {
     if (Scene::is_pattern(name) && std::ranges::find(selections, part) != selections.end()) continue;
     selections.push_back(part);
   }
+}
+
+// As other programs call it.
+void refuse_other_names_of_sky(const Scene& scene, const std::string& name) {
+  constexpr std::array<std::string_view, 17> kOthers = {
+      "sky",  "space",  "void",    "outside", "outdoor",  "outdoors",     "environment", "env",     "ambient",
+      "open", "(open)", "nothing", "air",     "exterior", "surroundings", "background",  "infinity"};
+  if (name == "sky" || has_patch(scene, name) || is_a_name(scene, name)) return;
+  if (std::ranges::find(kOthers, text::in_lower_case(name)) == kOthers.end()) return;
+  text::refuse("there is no patch named " + text::in_quotes(name, text::kShownName),
+               "what is open, all directions that meet nothing, is called sky here", "write sky instead");
 }
 
 }  // namespace
@@ -65,14 +77,12 @@ std::vector<Selection> selections_named(const Scene& scene, const std::vector<st
 }
 
 bool take_sky(const Scene& scene, std::vector<std::string>& texts) {
-  const auto is_patch = [&](const std::string& name) {
-    return std::ranges::any_of(scene.patches(), [&](const Patch& patch) { return patch.name == name; });
-  };
   std::vector<std::string> kept;
   bool found = false;
   for (const std::string& text : texts) {
-    for (const std::string& name : is_patch(text) ? std::vector{text} : split_list(text)) {
-      const bool is_sky = name == "sky" && !is_patch(name);
+    for (const std::string& name : has_patch(scene, text) ? std::vector{text} : split_list(text)) {
+      refuse_other_names_of_sky(scene, name);
+      const bool is_sky = name == "sky" && !has_patch(scene, name);
       found = found || is_sky;
       if (!is_sky) kept.push_back(name);
     }
