@@ -3,6 +3,7 @@
 
 #include "exactff/error.h"
 #include "exactff/receiver.h"
+#include "receivers/own_pieces.h"
 #include "scene/contacts.h"
 #include "scene/scene_data.h"
 #include "text/numbered_name.h"
@@ -26,7 +27,16 @@ FaceId one_face(const Scene& scene, const std::string& name) {
 }  // namespace
 
 std::optional<FaceId> buried_under(const Scene& scene, const Receiver& receiver) {
-  return buried_under(scene, receiver.on, receiver.point, receiver.normal);
+  if (receiver.on.empty() || contacts(scene).empty()) return std::nullopt;
+  for (const FaceId id : receiver.on) {
+    const Face& face = scene.face(id);
+    if (face.piece_count == 0) continue;
+    std::vector<std::uint32_t> pieces;  // in the plane that the receiver lies in
+    for (std::uint32_t p = face.first_piece; p < face.first_piece + face.piece_count; ++p) pieces.push_back(p);
+    if (face.shape != FaceShape::kPlanar) pieces = {own_piece(scene, id, receiver.point)};
+    if (const auto cover = buried_under(scene, pieces, receiver.point, receiver.normal)) return cover;
+  }
+  return std::nullopt;
 }
 
 bool some_is_buried(const Scene& scene) { return !contacts(scene).empty(); }

@@ -250,37 +250,19 @@ const Contacts& contacts(const Scene& scene) {
   return data.contacts;
 }
 
-namespace {
-
-// Of a face, what its pieces in the plane of this one are covered by. A point may lie on the common side of two.
-std::vector<std::uint32_t> covers_in_plane(const Scene& scene, const Face& face, std::uint32_t piece) {
-  const std::uint32_t first = face.shape == FaceShape::kPlanar ? face.first_piece : piece;
-  const std::uint32_t last = face.shape == FaceShape::kPlanar ? face.first_piece + face.piece_count : piece + 1;
-  std::vector<std::uint32_t> result;
-  for (std::uint32_t p = first; p < last; ++p) {
-    const auto covers = contacts(scene).covers(p);
-    result.insert(result.end(), covers.begin(), covers.end());
-  }
-  return result;
-}
-
-}  // namespace
-
-std::optional<FaceId> buried_under(const Scene& scene, std::span<const FaceId> on, const Vec3& point,
+std::optional<FaceId> buried_under(const Scene& scene, std::span<const std::uint32_t> pieces, const Vec3& point,
                                    const Vec3& normal) {
-  if (on.empty() || contacts(scene).empty()) return std::nullopt;
-  for (const FaceId id : on) {
-    const Face& face = scene.face(id);
-    for (std::uint32_t piece = face.first_piece; piece < face.first_piece + face.piece_count; ++piece) {
-      const auto covers = contacts(scene).covers(piece);
-      if (covers.empty()) continue;
-      const auto at = [&](int i) -> const Vec3& { return scene.vertices()[scene.pieces()[piece].frame[i]]; };
-      if (kernel::exact_sign_of_det({at(0), at(1)}, {at(0), at(2)}, {Vec3{}, normal}) <= 0) continue;
-      const AroundPoint around(scene, scene.pieces()[covers.front()], point);
-      if (around.is_covered(covers_in_plane(scene, face, piece))) return scene.pieces()[covers.front()].face;
-    }
+  std::vector<std::uint32_t> covers;
+  for (const std::uint32_t piece : pieces) {
+    const auto of_piece = contacts(scene).covers(piece);
+    covers.insert(covers.end(), of_piece.begin(), of_piece.end());
   }
-  return std::nullopt;
+  if (covers.empty()) return std::nullopt;
+  const Piece& first = scene.pieces()[pieces.front()];
+  const auto at = [&](int i) -> const Vec3& { return scene.vertices()[first.frame[i]]; };
+  if (kernel::exact_sign_of_det({at(0), at(1)}, {at(0), at(2)}, {Vec3{}, normal}) <= 0) return std::nullopt;
+  const Piece& cover = scene.pieces()[covers.front()];
+  return AroundPoint(scene, cover, point).is_covered(covers) ? std::optional(cover.face) : std::nullopt;
 }
 
 }  // namespace exactff

@@ -54,9 +54,10 @@ class Contacts {
 // Found at the first call; safe to call from several threads.
 const Contacts& contacts(const Scene& scene);
 
-// The face that buries a receiver (receiver.h) with these own faces. It is buried if it looks from the front of one of
-// them, and its projection along the face's normal lies in the open interior of what is buried. Exact.
-[[nodiscard]] std::optional<FaceId> buried_under(const Scene& scene, std::span<const FaceId> on, const Vec3& point,
-                                                 const Vec3& normal);
+// The face that buries a point of these pieces, which lie in one plane and have one front. The point must be looked at
+// from that front, by the normal, and its projection along the front must lie in the open interior of what is buried.
+// Exact.
+[[nodiscard]] std::optional<FaceId> buried_under(const Scene& scene, std::span<const std::uint32_t> pieces,
+                                                 const Vec3& point, const Vec3& normal);
 
 }  // namespace exactff

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "scene/contacts.h"
 #include "visibility/plane_frame.h"
 
 namespace exactff::visibility {
@@ -14,7 +13,7 @@ View::View(const Scene& scene_in, const Receiver& receiver)
       x(receiver.point),
       n(receiver.normal),
       own(scene_in, receiver),
-      is_buried(buried_under(scene_in, receiver.on, receiver.point, receiver.normal).has_value()) {}
+      is_buried(buried_under(scene_in, receiver).has_value()) {}
 
 kernel::Direction View::normal() const { return kernel::make_direction(kernel::exact_vector(n).v); }
 
