@@ -101,7 +101,8 @@ TEST_F(MpiTruth, AMatrixOfKilledProcessesHasTheBytesOfOne) {
     return all;
   };
   const fs::path alone = directory_.path() / "alone.csv";
-  EXPECT_EQ(validation::run_program(EXACTFF_PROGRAM, matrix(alone, {})).exit_code, 0);
+  constexpr int kWide = 3;  // the budget is too small for the accuracy
+  EXPECT_EQ(validation::run_program(EXACTFF_PROGRAM, matrix(alone, {})).exit_code, kWide);
   for (std::size_t victim = 0; victim < 2 && !fs::exists(file_); ++victim) {
     const std::uintmax_t before = size_of(journal_);
     const RunningProgram run = start(matrix(file_, {"--resume"}));
@@ -115,7 +116,7 @@ TEST_F(MpiTruth, AMatrixOfKilledProcessesHasTheBytesOfOne) {
     EXPECT_TRUE(fs::exists(file_) || size_of(journal_) > before);
   }
   const RunningProgram last = start(matrix(file_, {"--resume"}));
-  EXPECT_EQ(last.wait(), 0) << last.error();
+  EXPECT_EQ(last.wait(), kWide) << last.error();
   EXPECT_EQ(text_of(file_), text_of(alone));
   const RunningProgram without_file = start({"matrix", EXACTFF_DATA_DIR "/scenes/cornell_box.obj"});
   EXPECT_EQ(without_file.wait(), 2);
@@ -124,7 +125,8 @@ TEST_F(MpiTruth, AMatrixOfKilledProcessesHasTheBytesOfOne) {
 
 TEST_F(MpiTruth, WhatIsWrongIsToldOnce) {
   for (const std::vector<std::string>& arguments :
-       {truth("flor", file_, {}), truth("floor", file_, {"--shard", "9/4"}), truth("floor", file_, {"--what"})}) {
+       {truth("flor", file_, {}), truth("floor", file_, {"--shard", "9/4"}), truth("floor", file_, {"--what"}),
+        truth("floor", file_, {"--npy", file_}), truth("floor", file_, {"--npy"})}) {
     const RunningProgram run = start(arguments);
     EXPECT_EQ(run.wait(), 2);
     const std::string error = run.error();

@@ -132,7 +132,7 @@ def test_a_baseline_is_never_loosened(tmp_path):
     assert check(0.11, baseline=file, slack=0.2)
     better = check(0.05, baseline=file, write_baseline=tighter)
     assert better and better.improvements[0][:2] == ("baseline max-abs", "") and tighter.read_text() != first
-    assert not check(0.1, baseline=file) and not check(np.nan, write_baseline=tmp_path / "none.json")
+    assert not check(0.1, baseline=tighter) and not check(np.nan, write_baseline=tmp_path / "none.json")
     assert not (tmp_path / "none.json").exists()
 
 
