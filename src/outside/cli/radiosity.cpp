@@ -35,6 +35,7 @@
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
+#include "text/text_file.h"
 #include "vtk/vtk.h"
 
 namespace exactff::cli {
