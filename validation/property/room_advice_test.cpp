@@ -40,9 +40,9 @@ const std::vector<Plan> kPlans = {
     {{{0, 0}, {3, 0}, {3, 2}, {5, 2}, {5, 4}, {2, 4}, {2, 2}, {0, 2}}, {{0, 0, 3, 2}, {2, 2, 5, 4}}}};
 
 // All fronts look to the air.
-class RoomMaker {
+class WallMaker {
  public:
-  explicit RoomMaker(Random& random) : random_(random), plan_(kPlans[random.below(kPlans.size())]) {}
+  explicit WallMaker(Random& random) : random_(random), plan_(kPlans[random.below(kPlans.size())]) {}
 
   PlainScene make() {
     scene_.materials.push_back({.name = "bright", .radiosity = {5, 5, 5}});
@@ -147,7 +147,7 @@ Scene obeyed(const PlainScene& plain, const std::vector<std::vector<Selection>>&
 TEST(RoomAdvice, IsNotGivenForRoomsThatAreRight) {
   for (std::uint64_t s = 0; s < scaled_count(60); ++s) {
     Random random(seed_of(s));
-    const PlainScene plain = RoomMaker(random).make();
+    const PlainScene plain = WallMaker(random).make();
     EXPECT_TRUE(advised_flips(generate::build(plain)).empty()) << s << '\n' << generate::to_obj(plain);
   }
 }
@@ -157,7 +157,7 @@ TEST(RoomAdvice, ObeyedLosesNothingAndEndsInSilence) {
   std::size_t advised = 0, right = 0;
   for (std::uint64_t s = 0; s < scaled_count(24); ++s) {
     Random random(seed_of(s));
-    PlainScene plain = RoomMaker(random).make();
+    PlainScene plain = WallMaker(random).make();
     const Scene truth = generate::build(plain);
     const LostViews judge(truth);
     const double area = 100.0, least = judge.lost(truth);

@@ -56,7 +56,7 @@ void SceneArguments::add_to(CLI::App& app) {
       ->check(CLI::IsMember({"groups", "faces"}))
       ->capture_default_str();
   app.add_flag("--skip-bad-faces", skip_bad_faces, "Leave out unusable faces with a warning instead of stopping");
-  add_names(app, "--flip", flip, "Turn this patch or face round: its front becomes its back");
+  add_names(app, "--flip", flip, "Turn this patch or face round, or all: its front becomes its back");
   add_names(app, "--transparent", transparent,
             "This patch or face hides nothing; it can still be a source and carry receivers");
 }

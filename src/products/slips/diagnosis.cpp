@@ -221,13 +221,14 @@ std::vector<Finding> diagnose(const Scene& scene) {
   };
   FlipTrials trials(scene);
   add(contradicting_normals(scene, trials));
-  std::vector<Selection> objects;
+  std::vector<Selection> turned;
   for (Finding& finding : findings_of_fronts(scene, trials)) {
-    objects.insert(objects.end(), finding.objects.begin(), finding.objects.end());
+    const bool is_turned = finding.kind == Kind::kInwardSurface || finding.kind == Kind::kOutwardRoom;
+    if (is_turned) turned.insert(turned.end(), finding.objects.begin(), finding.objects.end());
     findings.push_back(std::move(finding));
   }
   std::ranges::move(twin_faces(scene), std::back_inserter(findings));
-  std::ranges::move(overlap_findings(scene, objects), std::back_inserter(findings));
+  std::ranges::move(overlap_findings(scene, turned), std::back_inserter(findings));
   add(odd_scale(scene));
   return findings;
 }

@@ -102,6 +102,7 @@ void Outlook::cast(const SightLines& sight, std::uint32_t piece, const Vec3& poi
     double last = -HUGE_VAL;
     for (const Hit& hit : sight.hits_in_sight(point, direction_before(normal, place[0], place[1]), HUGE_VAL)) {
       ray.clear = ray.clear && hit.distance - last > 1e-9 * sight.diameter();
+      ray.ends = ray.ends || !scene_.pieces()[hit.piece].transparent;
       ray.seen.push_back(2 * hit.piece + (hit.front ? 0 : 1));
       last = hit.distance;
     }
@@ -126,7 +127,7 @@ Outlook::Lost Outlook::lost(const Flipped& flipped) const {
   Lost lost;
   for (const Ray& ray : rays_) {
     if (!is_front(ray.from, flipped) || is_good(ray, flipped)) continue;
-    (ray.seen.empty() ? lost.to_nothing : lost.to_backs) += ray.area;
+    (ray.ends ? lost.to_backs : lost.to_nothing) += ray.area;
   }
   return lost;
 }

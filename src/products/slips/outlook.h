@@ -23,6 +23,7 @@ class Outlook {
     double area = 0.0;            // for which it stands
     std::vector<Side> seen = {};  // up to the first face that is not transparent, with all faces in the same place
     bool clear = true;            // no two of them are in the same place
+    bool ends = false;            // on a face that is not transparent: of others, no backs are seen
   };
 
   // The same number of rays from both sides of each of the oriented surfaces. None starts where another face lies on

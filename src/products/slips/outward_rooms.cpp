@@ -109,7 +109,7 @@ class RoomFinder {
     for (const Outlook::Ray& ray : outlook_.rays()) {
       const SurfaceSide root = roots[surface_side(ray.from)];
       all[root] += ray.area;
-      if (ray.seen.empty()) open[root] += ray.area;
+      if (!ray.ends) open[root] += ray.area;
     }
     for (auto& [root, space] : spaces)
       if (all[root] > 0.0) space.open = open[root] / all[root];
