@@ -44,13 +44,13 @@ void warn_of_own_face(const Scene& scene, const Receiver& receiver) {
 }
 
 // The first face in the direction of the normal, if the receiver looks at its back, squarely.
-void warn_of_face_before(const Scene& scene, const Receiver& receiver,
+void warn_of_face_before(const Scene& scene, const Receiver& receiver, const std::function<bool()>& sees_no_front,
                          const std::function<std::string(const Receiver&)>& effect) {
   constexpr double kCosOfOneDegree = 0.99984;
   const auto hit = render::first_hit(scene, {receiver.point, kernel::unit(receiver.normal)});
   if (!hit || !hit->back) return;
   const Vec3 front = kernel::unit(scene.face(hit->face).newell);
-  if (kernel::dot(front, kernel::unit(receiver.normal)) < kCosOfOneDegree) return;
+  if (kernel::dot(front, kernel::unit(receiver.normal)) < kCosOfOneDegree || !sees_no_front()) return;
   const std::string change = effect({hit->point, receiver.normal, {hit->face}, ""});
   if (change.empty()) return;
   const std::string name = scene.name_of(hit->face);
@@ -81,7 +81,7 @@ Receiver OneReceiver::make(const Scene& scene) const {
 }
 
 void warn_of_turned_surfaces(const Scene& scene) {
-  constexpr std::size_t kMostFaces = 10'000;
+  constexpr std::size_t kMostFaces = 1'000;
   if (scene.faces().size() <= kMostFaces) print_warnings(slips::warnings_of_turned_surfaces(scene));
 }
 
@@ -105,10 +105,7 @@ void warn_of_near_face(const Scene& scene, const Receiver& receiver, const std::
                        const std::function<std::string(const Receiver&)>& effect) {
   if (!receiver.on.empty()) return warn_of_own_face(scene, receiver);
   const NearFaces near = find_faces(scene, receiver, face_tolerance(scene, receiver.point));
-  if (near.faces.empty()) {
-    if (sees_no_front()) warn_of_face_before(scene, receiver, effect);
-    return;
-  }
+  if (near.faces.empty()) return warn_of_face_before(scene, receiver, sees_no_front, effect);
   if (near.side == 0) return;
   const std::string name = scene.name_of(near.faces);
   const bool looks_through = (near.side < 0) != near.turned;
