@@ -16,11 +16,6 @@ namespace {
 
 using kernel::ExactVec3;
 
-bool meet(const Box& a, const Box& b) {
-  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
-         a.low.z <= b.high.z && b.low.z <= a.high.z;
-}
-
 using FaceCorners = std::vector<std::uint32_t>;  // places, in order
 
 class ContactFinder {

@@ -1,7 +1,8 @@
 // Round an edge from a to b, the uses of the edge are sorted by angle, counter-clockwise as seen from b. A piece that
 // runs upwards, from a to b, has its front on the side that follows, so one leaves a solid there; at one that runs
-// downwards, one enters. Entries and exits are matched as brackets are, around the circle. At one angle exits come
-// first: what touches is not joined.
+// downwards, one enters. Entries and exits are matched as brackets are, around the circle. What lies on each other is
+// not joined if it can be avoided: at one angle exits come first, and those that lie on an entry are matched first.
+// So are a box and what it stands on told apart, and two rooms with a common wall.
 #include "scene/solids.h"
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <numeric>
 
 #include "kernel/exact_vec.h"
+#include "kernel/vec.h"
 #include "scene/edges.h"
 #include "scene/junctions.h"
 
@@ -41,6 +43,11 @@ class Dial {
     const int at_p = quadrant(to_p), at_q = quadrant(to_q);
     return at_p != at_q ? at_p - at_q : -kernel::orientation(a_, b_, to_p, to_q);
   }
+  // Whether the piece lies on the same side of the edge as the first one, in its plane.
+  [[nodiscard]] bool is_at_zero(std::uint32_t piece) const {
+    const Vec3& to = beside(piece);
+    return !is_clearly_opposite(to) && quadrant(to) == 0;
+  }
 
  private:
   // A corner of the piece off the edge's line.
@@ -48,6 +55,13 @@ class Dial {
     const auto& frame = scene_.pieces()[piece].frame;
     const auto at = [&](int i) -> const Vec3& { return scene_.vertices()[frame[i]]; };
     return are_straight(a_, at(0), b_) ? at(are_straight(a_, at(1), b_) ? 2 : 1) : at(0);
+  }
+  // A filter for flat parts of meshes: each component of a cross product carries 8u of the product of the lengths.
+  [[nodiscard]] bool is_clearly_opposite(const Vec3& v) const {
+    using kernel::difference, kernel::cross, kernel::dot, kernel::length;
+    const Vec3 along = difference(b_, a_), to_zero = difference(zero_, a_), to_v = difference(v, a_);
+    const double size = dot(along, along) * length(to_zero) * length(to_v);
+    return dot(cross(along, to_zero), cross(along, to_v)) < -1e-12 * size;
   }
   // 0: the angle is 0; 1: below a half turn; 2: a half turn; 3: above.
   [[nodiscard]] int quadrant(const Vec3& v) const {
@@ -66,24 +80,28 @@ class Dial {
 class SolidFinder {
  public:
   explicit SolidFinder(const Scene& scene)
-      : scene_(scene), groups_(scene.pieces().size()), open_(scene.pieces().size(), 0) {}
+      : scene_(scene),
+        groups_(scene.pieces().size()),
+        open_(scene.pieces().size(), 0),
+        contested_(scene_edges(scene).size(), 0) {}
 
   void find() {
     const SceneEdges& edges = scene_edges(scene_);
-    std::vector<EdgeOfPiece> uses;
+    find_contested();
+    std::vector<EdgeOfPiece> contested, rest, unmatched;
     for (std::uint32_t id = 0; id < edges.size(); ++id) {
-      uses.clear();
+      const auto uses = edges.uses(id);
+      if (contested_[id] == 0) {
+        groups_.join(uses[0].piece(), uses[1].piece());
+        continue;
+      }
       const SceneEdge& edge = edges.edge(id);
-      for (const EdgeUse& use : edges.uses(id)) uses.push_back({edge.a, edge.b, use.piece(), use.upwards()});
-      pair_up(uses, unpaired_);
+      for (const EdgeUse& use : uses) contested.push_back({edge.a, edge.b, use.piece(), use.upwards()});
     }
-    cut_at_junctions(unpaired_, scene_.vertices());
-    std::vector<EdgeOfPiece> rest;
-    for_each_edge(unpaired_, [&](auto first, auto last) {
-      uses.assign(first, last);
-      pair_up(uses, rest);
-    });
-    for (const EdgeOfPiece& use : rest) open_[use.piece] = 1;
+    cut_at_junctions(contested, scene_.vertices());
+    for_each_edge(contested, [&](auto first, auto last) { leave_unmatched({first, last}, rest); });
+    for_each_edge(rest, [&](auto first, auto last) { match_across_wedges({first, last}, unmatched); });
+    for (const EdgeOfPiece& use : unmatched) open_[use.piece] = 1;
     for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
       if (open_[piece] != 0 || scene_.pieces()[piece].transparent) open_[groups_.root(piece)] = 1;
     }
@@ -95,30 +113,105 @@ class SolidFinder {
   }
 
  private:
-  void pair_up(std::vector<EdgeOfPiece>& uses, std::vector<EdgeOfPiece>& rest) {
-    if (uses.size() == 2 && uses[0].upwards != uses[1].upwards) return groups_.join(uses[0].piece, uses[1].piece);
-    if (uses.size() > 2) sort_by_angle(uses);
-    std::vector<EdgeOfPiece> entries, exits;  // that wait for a partner
+  // Two pieces have the edge, one in each direction, and do not lie on each other.
+  [[nodiscard]] bool has_plain_uses(std::uint32_t id) const {
+    const SceneEdge& edge = scene_edges(scene_).edge(id);
+    const auto uses = scene_edges(scene_).uses(id);
+    if (uses.size() != 2 || uses[0].upwards() == uses[1].upwards()) return false;
+    return !Dial(scene_, edge.a, edge.b, uses[0].piece()).is_at_zero(uses[1].piece());
+  }
+
+  // Edges that are not plain, and those that have a part in common with one that is contested. If a solid has an edge
+  // as a whole, and what touches it there in parts, then neither may be paired before both are cut.
+  void find_contested() {
+    std::vector<std::uint32_t> waiting;
+    const auto contest = [&](std::uint32_t id) {
+      if (contested_[id] == 0) waiting.push_back(id);
+      contested_[id] = 1;
+    };
+    for (std::uint32_t id = 0; id < contested_.size(); ++id) {
+      if (!has_plain_uses(id)) contest(id);
+    }
+    while (!waiting.empty()) {
+      const std::uint32_t id = waiting.back();
+      waiting.pop_back();
+      for_each_on_line(id, contest);
+    }
+  }
+  template <class Take>
+  void for_each_on_line(std::uint32_t id, const Take& take) const {
+    const SceneEdges& edges = scene_edges(scene_);
+    const Vec3 &a = place(edges.edge(id).a), &b = place(edges.edge(id).b);
+    Box box{a, a};
+    box.include(b);
+    shaft_tree(scene_).visit_where([&](const Box& node, std::size_t) { return meet(node, box); },
+                                   [&](std::uint32_t piece, std::size_t) {
+                                     if (scene_.pieces()[piece].transparent) return;
+                                     for (const std::uint32_t other : edges.of_piece(scene_.pieces()[piece])) {
+                                       const SceneEdge& edge = edges.edge(other);
+                                       if (other != id && have_common_part(a, b, place(edge.a), place(edge.b)))
+                                         take(other);
+                                     }
+                                   });
+  }
+  [[nodiscard]] const Vec3& place(std::uint32_t v) const { return scene_.vertices()[v]; }
+  [[nodiscard]] static bool have_common_part(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const auto is_on_line = [&](const Vec3& v) { return v == a || v == b || are_straight(a, v, b); };
+    if (!is_on_line(c) || !is_on_line(d)) return false;
+    double Vec3::*axis = a.x != b.x ? &Vec3::x : a.y != b.y ? &Vec3::y : &Vec3::z;
+    return std::max(std::min(a.*axis, b.*axis), std::min(c.*axis, d.*axis)) <
+           std::min(std::max(a.*axis, b.*axis), std::max(c.*axis, d.*axis));
+  }
+
+  // Matches pieces that plain edges connect, whatever lies between them: behind the walls of two rooms that touch,
+  // wedges overlap.
+  void leave_unmatched(std::span<const EdgeOfPiece> uses, std::vector<EdgeOfPiece>& rest) {
+    std::vector<EdgeOfPiece> left;
     for (const EdgeOfPiece& use : uses) {
-      if (!use.upwards) {
-        entries.push_back(use);
-      } else if (entries.empty()) {
-        exits.push_back(use);
+      const auto partner = std::ranges::find_if(left, [&](const EdgeOfPiece& other) {
+        return other.upwards != use.upwards && groups_.root(other.piece) == groups_.root(use.piece);
+      });
+      if (partner == left.end()) {
+        left.push_back(use);
       } else {
-        match(entries, use);
+        left.erase(partner);
       }
     }
-    std::size_t matched = 0;
-    for (; matched < exits.size() && !entries.empty(); ++matched) match(entries, exits[matched]);
-    rest.insert(rest.end(), entries.begin(), entries.end());
-    rest.insert(rest.end(), exits.begin() + static_cast<std::ptrdiff_t>(matched), exits.end());
+    rest.insert(rest.end(), left.begin(), left.end());
   }
-  void match(std::vector<EdgeOfPiece>& entries, const EdgeOfPiece& exit) {
-    groups_.join(entries.back().piece, exit.piece);
-    entries.pop_back();
-  }
-  void sort_by_angle(std::vector<EdgeOfPiece>& uses) const {
+  void match_across_wedges(std::span<const EdgeOfPiece> all, std::vector<EdgeOfPiece>& rest) {
+    std::vector<EdgeOfPiece> uses;
+    leave_unmatched(all, uses);
+    if (uses.empty()) return;
     const Dial dial(scene_, uses[0].low, uses[0].high, uses[0].piece);
+    sort_by_angle(dial, uses);
+    std::vector<std::uint8_t> is_matched(uses.size(), 0);
+    const auto is_free = [&](std::size_t i, bool exit) { return uses[i].upwards == exit && is_matched[i] == 0; };
+    const auto coincide = [&](std::size_t i, std::size_t j) { return dial.compare(uses[i].piece, uses[j].piece) == 0; };
+    const auto lies_on_an_entry = [&](std::size_t exit) {
+      for (std::size_t i = 0; i < uses.size(); ++i) {
+        if (is_free(i, false) && coincide(i, exit)) return true;
+      }
+      return false;
+    };
+    enum class Exits { kOnEntries, kAll, kWithSheets };
+    for (const Exits exits : {Exits::kOnEntries, Exits::kAll, Exits::kWithSheets}) {
+      for (std::size_t steps = 1; steps < uses.size(); ++steps) {
+        for (std::size_t exit = 0; exit < uses.size(); ++exit) {
+          const std::size_t entry = (exit + uses.size() - steps) % uses.size();
+          if (!is_free(exit, true) || !is_free(entry, false)) continue;
+          if (exits != Exits::kWithSheets && coincide(exit, entry)) continue;
+          if (exits == Exits::kOnEntries && !lies_on_an_entry(exit)) continue;
+          groups_.join(uses[entry].piece, uses[exit].piece);
+          is_matched[entry] = is_matched[exit] = 1;
+        }
+      }
+    }
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+      if (is_matched[i] == 0) rest.push_back(uses[i]);
+    }
+  }
+  static void sort_by_angle(const Dial& dial, std::vector<EdgeOfPiece>& uses) {
     std::ranges::sort(uses, [&](const EdgeOfPiece& p, const EdgeOfPiece& q) {
       const int order = dial.compare(p.piece, q.piece);
       if (order != 0) return order < 0;
@@ -128,8 +221,8 @@ class SolidFinder {
 
   const Scene& scene_;
   Groups groups_;
-  std::vector<std::uint8_t> open_;  // by piece
-  std::vector<EdgeOfPiece> unpaired_;
+  std::vector<std::uint8_t> open_;       // by piece
+  std::vector<std::uint8_t> contested_;  // by edge
 };
 
 // The sign of the sum of det(a, b, c) over triangles, of points as seen from the apex.

@@ -2,9 +2,10 @@
 //
 // At every edge, faces are paired across the wedge behind them: from a face, one turns round the edge, on the side of
 // its back, to the face that ends the wedge. So two boxes that share edges are two solids, and so are a room and the
-// box in its corner. A solid is a set of pieces that pairs connect, with every edge of each of them paired. Edges are
-// matched by the positions of their ends, and cut at T-junctions where they are not paired whole. Transparent pieces
-// belong to no solid.
+// box in its corner. An edge that only two pieces have, in no part of which there is another, pairs these; pieces that
+// such edges connect are paired first at the others, since behind the walls of two rooms that touch, wedges overlap. A
+// solid is a set of pieces that pairs connect, with every edge of each of them paired. Edges are matched by the
+// positions of their ends, and cut at T-junctions. Transparent pieces belong to no solid.
 //
 // A solid of positive volume has its fronts outside, as a box has. One of negative volume has them inside, as a room
 // has. That of a sheet with two faces has no volume.
@@ -18,6 +19,12 @@
 #include "scene/shaft_tree.h"
 
 namespace exactff {
+
+// Whether they have a point in common.
+[[nodiscard]] inline bool meet(const Box& a, const Box& b) {
+  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
+         a.low.z <= b.high.z && b.low.z <= a.high.z;
+}
 
 struct Solid {
   Box box;
