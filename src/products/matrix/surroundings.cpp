@@ -50,6 +50,14 @@ struct SharedPlane {
   std::vector<std::uint32_t> fronts, backs;
 };
 
+bool have_same_plane(const Scene& scene, std::uint32_t a, std::uint32_t b) {
+  const Piece &one = scene.pieces()[a], &other = scene.pieces()[b];
+  const auto at = [&](int i) -> const Vec3& { return scene.vertices()[one.frame[i]]; };
+  const kernel::PlaneThrough plane(at(0), at(1), at(2));
+  return std::ranges::all_of(other.frame, [&](std::uint32_t v) { return plane.side_of(scene.vertices()[v]) == 0; }) &&
+         have_same_front(scene, one, other);
+}
+
 // Pieces that are not transparent.
 std::vector<SharedPlane> planes_of(const Scene& scene) {
   SceneCopy copy(scene);
@@ -58,8 +66,12 @@ std::vector<SharedPlane> planes_of(const Scene& scene) {
   const Scene both = copy.take();
   const auto count = static_cast<std::uint32_t>(scene.pieces().size());
   std::vector<SharedPlane> result;
+  std::optional<std::uint32_t> last;
   for (const visibility::SourcePlane& plane : visibility::group_by_plane(both, faces_with_area(both))) {
-    SharedPlane& shared = result.emplace_back();
+    // Where something is buried, a plane may come in parts, one after the other.
+    if (!last || !have_same_plane(both, *last, plane.pieces.front())) result.emplace_back();
+    last = plane.pieces.front();
+    SharedPlane& shared = result.back();
     for (const std::uint32_t piece : plane.pieces) {
       if (scene.pieces()[piece % count].transparent) continue;
       (piece < count ? shared.fronts : shared.backs).push_back(piece % count);
