@@ -24,6 +24,10 @@ enum class Kind {
   kOppositeFaces,      // the same with opposite fronts, and the two are cut into other triangles
   kOverlappingFronts,  // fronts of different patches overlap in one plane, such as a window and its wall
   kNearlyCoplanar,     // likewise, but their planes are a rounding apart
+  kOpenFloor,          // a closed solid stands on a face that belongs to no closed surface
+  kNoBottom,           // a block stands on a face, and is closed but for its bottom
+  kNearContact,        // a closed solid misses the plane of a face that it almost touches
+  kOverlappingSolids,  // the insides of two closed solids overlap
   kScale,              // coordinates suggest a wrong unit
 };
 [[nodiscard]] std::string_view to_string(Kind kind);  // "unseen-front"
@@ -55,6 +59,9 @@ struct Finding {
 //
 // kOverlappingFronts, kNearlyCoplanar: as overlapping_fronts() says, without pairs of kDoubledFaces and those of
 // surfaces that are reported as turned. The largest few are named.
+//
+// kOpenFloor: exact, but for slivers. kNoBottom, kNearContact, kOverlappingSolids: in doubles. Faces almost touch if
+// they are at most a millionth of the scene's diameter apart. Solids that overlap by less are not reported.
 [[nodiscard]] std::vector<Finding> diagnose(const Scene& scene);
 
 // The findings about fronts that a --flip mends, in words: what a command says before it computes something else than
@@ -62,6 +69,16 @@ struct Finding {
 // second.
 [[nodiscard]] std::vector<Problem> warnings_of_turned_surfaces(const Scene& scene);
 [[nodiscard]] std::vector<Problem> warnings_of_fronts(const Scene& scene);
+
+// What is buried of a patch by the solids that another patch belongs to (receiver.h: buried_under()).
+struct Contact {
+  Selection patch, under;
+  double area = 0.0;   // in the square of the scene's unit of length; an estimate
+  double share = 0.0;  // of the patch's area, at most 1
+};
+// The largest area first; empty if nothing is buried, or if coordinates are beyond 1e90. What two patches bury together
+// counts for both.
+[[nodiscard]] std::vector<Contact> buried_parts(const Scene& scene);
 
 // Two patches or faces whose fronts lie on each other in one plane. Each has its full form factor there, so what sees
 // them counts the common part twice.

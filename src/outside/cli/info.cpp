@@ -134,6 +134,20 @@ void print_faces(const Scene& scene) {
             << (open == 0 ? " (the surface is closed)" : " (an odd number of faces uses them)") << '\n';
 }
 
+void print_contacts(const Scene& scene) {
+  const std::vector<slips::Contact> contacts = slips::buried_parts(scene);
+  if (contacts.empty()) return;
+  std::cout << "contacts (what is buried neither sends nor receives):\n";
+  TextTable table;
+  table.add_column("patch");
+  table.add_column("buried under");
+  for (const char* title : {"area", "share of the patch"}) table.add_column(title, Align::kRight);
+  for (const slips::Contact& one : contacts) {
+    table.add_row({scene.name_of(one.patch), scene.name_of(one.under), six_digits(one.area), six_digits(one.share)});
+  }
+  table.print(std::cout);
+}
+
 void print_findings(const std::vector<slips::Finding>& findings) {
   for (const slips::Finding& finding : findings)
     std::cout << "check: " << text::printable(finding.words.message()) << '\n';
@@ -155,6 +169,7 @@ void print_text(const Scene& scene, const flags::SceneArguments& arguments) {
   print_totals(scene, rows);
   print_list("emitters", emitter_names(scene));
   print_faces(scene);
+  print_contacts(scene);
   print_findings(slips::diagnose(scene));
   print_suggestion(scene, arguments);
 }
@@ -218,6 +233,13 @@ void print_json(const Scene& scene, const flags::SceneArguments& arguments) {
   json["not_planar"] = faces_to_json(scene);
   json["ignored"] = numbered_names(scene, FaceShape::kZeroArea);
   json["left_out"] = numbered_names(scene, FaceShape::kSkipped);
+  json["contacts"] = ordered_json::array();
+  for (const slips::Contact& one : slips::buried_parts(scene)) {
+    json["contacts"].push_back({{"patch", scene.name_of(one.patch)},
+                                {"under", scene.name_of(one.under)},
+                                {"area", one.area},
+                                {"share", one.share}});
+  }
   json["findings"] = ordered_json::array();
   for (const slips::Finding& finding : slips::diagnose(scene)) json["findings"].push_back(to_json(finding, scene));
   json["warnings"] = ordered_json::array();

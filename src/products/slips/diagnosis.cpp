@@ -15,9 +15,11 @@
 namespace exactff::slips {
 
 std::string_view to_string(Kind kind) {
-  constexpr std::array<std::string_view, 10> kNames = {
-      "contradicting-normals", "inward-surface", "outward-room",       "unseen-front",    "emitter-looks-away",
-      "doubled-faces",         "opposite-faces", "overlapping-fronts", "nearly-coplanar", "scale"};
+  constexpr std::array<std::string_view, 14> kNames = {
+      "contradicting-normals", "inward-surface", "outward-room",   "unseen-front",
+      "emitter-looks-away",    "doubled-faces",  "opposite-faces", "overlapping-fronts",
+      "nearly-coplanar",       "on-open-floor",  "no-bottom",      "near-contact",
+      "overlapping-solids",    "scale"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -229,6 +231,7 @@ std::vector<Finding> diagnose(const Scene& scene) {
   }
   std::ranges::move(twin_faces(scene), std::back_inserter(findings));
   std::ranges::move(overlap_findings(scene, turned), std::back_inserter(findings));
+  std::ranges::move(contact_findings(scene), std::back_inserter(findings));
   add(odd_scale(scene));
   return findings;
 }

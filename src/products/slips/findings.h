@@ -23,6 +23,8 @@ namespace exactff::slips {
 [[nodiscard]] std::vector<Finding> twin_faces(const Scene& scene);  // kDoubledFaces, kOppositeFaces
 // kOverlappingFronts, kNearlyCoplanar, except of `turned`: what lies on the back of a table does not overlap it.
 [[nodiscard]] std::vector<Finding> overlap_findings(const Scene& scene, std::span<const Selection> turned);
+// kOpenFloor, kNoBottom, kNearContact, kOverlappingSolids.
+[[nodiscard]] std::vector<Finding> contact_findings(const Scene& scene);
 [[nodiscard]] std::optional<Finding> odd_scale(const Scene& scene);
 
 }  // namespace exactff::slips

@@ -114,14 +114,15 @@ bool are_in_one_plane(const Scene& scene, const Piece& a, const Piece& b) {
 
 }  // namespace
 
-std::optional<PieceOverlap> overlap_of(const Scene& scene, const SightLines& sight, std::uint32_t a, std::uint32_t b) {
+std::optional<PieceOverlap> overlap_of(const Scene& scene, const SightLines& sight, std::uint32_t a, std::uint32_t b,
+                                       double reach) {
   constexpr double kNearlyParallel = 0.99;  // a millionth of a diameter leaves slim pieces some freedom
   if (std::abs(dot(sight.normal(a), sight.normal(b))) < kNearlyParallel) return std::nullopt;
   const double size_a = diameter_of(scene, a), size_b = diameter_of(scene, b);
   const std::uint32_t larger = size_a < size_b ? b : a, smaller = size_a < size_b ? a : b;
   const Plane plane(scene, sight, larger);
   const double apart = plane.distance(smaller);
-  if (!(apart <= kNear * std::max(size_a, size_b))) return std::nullopt;
+  if (!(apart <= std::max(reach, kNear * std::max(size_a, size_b)))) return std::nullopt;
   const Polygon under = plane.outline(larger);
   Polygon common = plane.outline(smaller);
   const double least = 0.5 * std::min(twice_area(under), twice_area(common));
@@ -133,6 +134,10 @@ std::optional<PieceOverlap> overlap_of(const Scene& scene, const SightLines& sig
   if (are_in_one_plane(scene, scene.pieces()[a], scene.pieces()[b])) return PieceOverlap{area, 0.0};
   if (!(area > kSliverApart * least)) return std::nullopt;
   return PieceOverlap{area, std::max(apart, std::numeric_limits<double>::min())};
+}
+
+double piece_area(const Scene& scene, const SightLines& sight, std::uint32_t piece) {
+  return 0.5 * twice_area(Plane(scene, sight, piece).outline(piece));
 }
 
 namespace {

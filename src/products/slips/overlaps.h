@@ -15,9 +15,11 @@ struct PieceOverlap {
 };
 
 // Nothing if less than a millionth of the smaller piece is covered: then they only touch, but for roundings of their
-// corners. If they lie in two planes, less than a ten-thousandth, and more than a millionth of the larger piece's
-// diameter from each other. The fronts may be the same or opposite.
+// corners. If they lie in two planes, less than a ten-thousandth, or more than a millionth of the larger piece's
+// diameter, and more than `reach`, from each other. The fronts may be the same or opposite.
 [[nodiscard]] std::optional<PieceOverlap> overlap_of(const Scene& scene, const SightLines& sight, std::uint32_t a,
-                                                     std::uint32_t b);
+                                                     std::uint32_t b, double reach = 0.0);
+
+[[nodiscard]] double piece_area(const Scene& scene, const SightLines& sight, std::uint32_t piece);
 
 }  // namespace exactff::slips

@@ -47,6 +47,11 @@ class SightLines {
   // in the order of distances.
   [[nodiscard]] std::vector<Hit> hits_in_sight(const Vec3& from, const Vec3& direction, double limit) const;
 
+  // Whether the segment meets the piece, between its ends.
+  [[nodiscard]] bool meets(std::uint32_t piece, const Vec3& from, const Vec3& along) const {
+    return crossing(piece, from, along).value_or(1.0) < 1.0;
+  }
+
  private:
   template <class Visit>
   void visit_crossings(const Vec3& from, const Vec3& direction, const Visit& visit) const;

@@ -12,26 +12,15 @@
 #include "scene/selections.h"
 #include "slips/findings.h"
 #include "slips/sight_lines.h"
+#include "slips/solid_angles.h"
 #include "text/phrases.h"
 
 namespace exactff::slips {
 
 namespace {
 
-using kernel::cross;
-using kernel::difference;
-using kernel::dot;
-
 constexpr std::size_t kMostPoints = 32;               // to be looked for inside a surface
 constexpr std::uint64_t kMostTriangles = 20'000'000;  // in all solid angles: about a second
-
-double length(const Vec3& v) { return std::hypot(v.x, v.y, v.z); }
-
-// The signed solid angle of a triangle (Van Oosterom and Strackee, 1983).
-double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double la = length(a), lb = length(b), lc = length(c);
-  return 2.0 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
-}
 
 bool contains(const Box& outer, const Box& inner) {
   const auto within = [](double low, double high, double inner_low, double inner_high) {
@@ -123,15 +112,8 @@ class TurnedSurfaces {
 
   bool is_inside(std::uint32_t surface, const Vec3& point) {
     if (triangles_ >= kMostTriangles) return false;
-    double sum = 0.0;
-    for (const std::uint32_t piece : pieces_[surface]) {
-      const auto corners = scene_.corners(scene_.pieces()[piece]);
-      const auto seen = [&](std::size_t i) { return difference(scene_.vertices()[corners[i]], point); };
-      for (std::size_t i = 2; i < corners.size(); ++i) sum += solid_angle(seen(0), seen(i - 1), seen(i));
-      triangles_ += corners.size() - 2;
-    }
     constexpr double kHalfSphere = 6.283185307179586;
-    return std::abs(sum) > kHalfSphere;
+    return std::abs(solid_angle_of(scene_, pieces_[surface], point, triangles_)) > kHalfSphere;
   }
 
   [[nodiscard]] Vec3 centre_of(std::uint32_t piece) const {
