@@ -77,8 +77,9 @@ struct Receiver {
 };
 
 // The face of a solid that stands on the receiver's own face (Scene, "Buried"). The receiver must look from the front
-// of its own face, and its projection along the face's normal must lie in the open interior of what is buried. Such a
-// receiver sees nothing: all form factors are 0. Exact.
+// of its own face, and its projection along the face's normal must lie in the open interior of what is buried; and no
+// other own face may hold it from the front and not be buried there. Such a receiver sees nothing: all form factors are
+// 0. Exact.
 [[nodiscard]] std::optional<FaceId> buried_under(const Scene& scene, const Receiver& receiver);
 // Whether any part of any face is buried.
 [[nodiscard]] bool some_is_buried(const Scene& scene);

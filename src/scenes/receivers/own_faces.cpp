@@ -28,15 +28,18 @@ FaceId one_face(const Scene& scene, const std::string& name) {
 
 std::optional<FaceId> buried_under(const Scene& scene, const Receiver& receiver) {
   if (receiver.on.empty() || contacts(scene).empty()) return std::nullopt;
+  std::optional<FaceId> under;
   for (const FaceId id : receiver.on) {
     const Face& face = scene.face(id);
     if (face.piece_count == 0) continue;
     std::vector<std::uint32_t> pieces;  // in the plane that the receiver lies in
     for (std::uint32_t p = face.first_piece; p < face.first_piece + face.piece_count; ++p) pieces.push_back(p);
     if (face.shape != FaceShape::kPlanar) pieces = {own_piece(scene, id, receiver.point)};
-    if (const auto cover = buried_under(scene, pieces, receiver.point, receiver.normal)) return cover;
+    const Burial burial = burial_of(scene, pieces, receiver.point, receiver.normal);
+    if (burial.is_exposed) return std::nullopt;
+    if (!under) under = burial.under;
   }
-  return std::nullopt;
+  return under;
 }
 
 bool some_is_buried(const Scene& scene) { return !contacts(scene).empty(); }

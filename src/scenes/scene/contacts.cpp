@@ -147,6 +147,10 @@ class AroundPoint {
         x_(x),
         normal_(cross(edge(piece.frame[0], piece.frame[1]), edge(piece.frame[0], piece.frame[2]))) {}
 
+  // Whether the point lies in the piece or on its boundary.
+  [[nodiscard]] bool is_held_by(std::uint32_t piece) const {
+    return sector_of(scene_.corners(scene_.pieces()[piece])).part != Sector::Part::kNothing;
+  }
   // Whether the pieces, all with the same front, cover everything around the point.
   [[nodiscard]] bool is_covered(std::span<const std::uint32_t> by) const {
     std::vector<Sector> sectors;
@@ -245,19 +249,23 @@ const Contacts& contacts(const Scene& scene) {
   return data.contacts;
 }
 
-std::optional<FaceId> buried_under(const Scene& scene, std::span<const std::uint32_t> pieces, const Vec3& point,
-                                   const Vec3& normal) {
+Burial burial_of(const Scene& scene, std::span<const std::uint32_t> pieces, const Vec3& point, const Vec3& normal) {
+  const Piece& first = scene.pieces()[pieces.front()];
+  const auto at = [&](int i) -> const Vec3& { return scene.vertices()[first.frame[i]]; };
+  if (kernel::exact_sign_of_det({at(0), at(1)}, {at(0), at(2)}, {Vec3{}, normal}) <= 0) return {};
   std::vector<std::uint32_t> covers;
   for (const std::uint32_t piece : pieces) {
     const auto of_piece = contacts(scene).covers(piece);
     covers.insert(covers.end(), of_piece.begin(), of_piece.end());
   }
-  if (covers.empty()) return std::nullopt;
-  const Piece& first = scene.pieces()[pieces.front()];
-  const auto at = [&](int i) -> const Vec3& { return scene.vertices()[first.frame[i]]; };
-  if (kernel::exact_sign_of_det({at(0), at(1)}, {at(0), at(2)}, {Vec3{}, normal}) <= 0) return std::nullopt;
-  const Piece& cover = scene.pieces()[covers.front()];
-  return AroundPoint(scene, cover, point).is_covered(covers) ? std::optional(cover.face) : std::nullopt;
+  Burial result;
+  if (!covers.empty() && AroundPoint(scene, scene.pieces()[covers.front()], point).is_covered(covers)) {
+    result.under = scene.pieces()[covers.front()].face;
+  } else {
+    const AroundPoint around(scene, first, point);
+    result.is_exposed = std::ranges::any_of(pieces, [&](std::uint32_t piece) { return around.is_held_by(piece); });
+  }
+  return result;
 }
 
 }  // namespace exactff

@@ -54,10 +54,13 @@ class Contacts {
 // Found at the first call; safe to call from several threads.
 const Contacts& contacts(const Scene& scene);
 
-// The face that buries a point of these pieces, which lie in one plane and have one front. The point must be looked at
-// from that front, by the normal, and its projection along the front must lie in the open interior of what is buried.
-// Exact.
-[[nodiscard]] std::optional<FaceId> buried_under(const Scene& scene, std::span<const std::uint32_t> pieces,
-                                                 const Vec3& point, const Vec3& normal);
+// Of a point of these pieces, which lie in one plane and have one front, as looked at from that front.
+struct Burial {
+  std::optional<FaceId> under;  // its projection along the front lies in the open interior of what this face buries
+  bool is_exposed = false;      // else, but a piece holds its projection
+};
+// Neither, if the normal does not look from the front. Exact.
+[[nodiscard]] Burial burial_of(const Scene& scene, std::span<const std::uint32_t> pieces, const Vec3& point,
+                               const Vec3& normal);
 
 }  // namespace exactff
