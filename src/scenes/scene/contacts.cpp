@@ -93,12 +93,18 @@ class ContactFinder {
     const bool is_of_positive = own != Solids::kNone && solids_.all()[own].sign > 0;
     if (by == own || sign == 0 || (sign < 0 && !is_of_positive)) return false;
     if (are_twins(cover, piece) && (own == Solids::kNone || is_other_side(by, own))) return false;
-    bool is_doubled = false;
+    return !is_doubled(cover);
+  }
+  // Whether another piece of its solid overlaps it with the opposite front.
+  [[nodiscard]] bool is_doubled(std::uint32_t cover) {
+    const auto known = doubled_.find(cover);
+    if (known != doubled_.end()) return known->second;
+    bool& result = doubled_[cover];
     for_each_in_plane(cover, [&](std::uint32_t other) {
-      is_doubled =
-          is_doubled || (solids_.of_piece(other) == by && !have_same_front(scene_, pieces_[cover], pieces_[other]));
+      result = result || (solids_.of_piece(other) == solids_.of_piece(cover) &&
+                          !have_same_front(scene_, pieces_[cover], pieces_[other]));
     });
-    return !is_doubled;
+    return result;
   }
 
   [[nodiscard]] FaceCorners corners_of(FaceId face) const {
@@ -130,6 +136,7 @@ class ContactFinder {
   const std::span<const Piece> pieces_;
   const Solids solids_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, bool> other_sides_;
+  std::map<std::uint32_t, bool> doubled_;  // of covers
 };
 
 // What a convex piece covers around a point, as seen along the normal of its front: nothing, everything, or a sector
