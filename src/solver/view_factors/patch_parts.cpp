@@ -175,11 +175,9 @@ std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch, Part
         if (never_overlap(panel, other) || scene.panel(panel).box.is_apart_from(scene.panel(other).box)) continue;
         left = outside(left, sides_of(whole(scene, other), scene.units), scene.units);
       }
-      if (what == PartsOf::kExposed) {
-        for (const std::uint32_t cover : plane.covers) {
-          if (!scene.panel(panel).box.is_apart_from(scene.pieces[cover].box)) {
-            left = outside(left, sides_of(whole(scene, cover), scene.units), scene.units);
-          }
+      for (const std::uint32_t cover : what == PartsOf::kExposed ? plane.covers : plane.elsewhere) {
+        if (!scene.panel(panel).box.is_apart_from(scene.pieces[cover].box)) {
+          left = outside(left, sides_of(whole(scene, cover), scene.units), scene.units);
         }
       }
       earlier.push_back(panel);

@@ -98,7 +98,7 @@ Outcome BooleanWalk::find_outcome() {
   for (const Occluder& occluder : occluders_) shadows.push_back(frame().to_polygon(occluder.ring));
   for (const std::uint32_t cover : plane_.covers) {
     Ring ring = ring_of(cover);
-    std::ranges::reverse(ring);  // x sees its back
+    if (facing_of(view_, view_.scene.pieces()[cover]) > 0) std::ranges::reverse(ring);
     shadows.push_back(frame().to_polygon(ring));
   }
   loops_ = difference(clipped_polygons(), shadows);

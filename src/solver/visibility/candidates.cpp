@@ -38,8 +38,7 @@ std::optional<PanelId> Candidates::gather(std::uint64_t most) {
 void Candidates::add_covers() {
   for (const std::uint32_t cover : query_.plane.covers) {
     clip_.take(query_.view.scene.corners(query_.view.scene.pieces()[cover]));
-    constexpr int kShowsItsBack = 1;
-    (void)clip_.add_occluder(false, kShowsItsBack);
+    (void)clip_.add_occluder(false, facing_of(query_.view, query_.view.scene.pieces()[cover]));
     search_.outline_panels.push_back(cover);
   }
 }

@@ -1,6 +1,7 @@
 #include "visibility/source_plane.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -86,19 +87,43 @@ bool have_conflict(const Scene& scene, const SourcePlane& plane) {
   });
 }
 
+// A part of the plane.
+SourcePlane only(const Scene& scene, const SourcePlane& plane, std::vector<std::uint32_t> pieces) {
+  SourcePlane part = plane;
+  part.pieces = std::move(pieces);
+  part.faces.clear();
+  for (const std::uint32_t piece : part.pieces) {
+    const FaceId face = scene.pieces()[piece].face;
+    if (part.faces.empty() || part.faces.back() != face) part.faces.push_back(face);
+  }
+  set_covers(scene, part);
+  return part;
+}
+
+void split_buried(const Scene& scene, const SourcePlane& plane, std::vector<SourcePlane>& result) {
+  std::vector<std::uint32_t> buried, others;
+  for (const std::uint32_t piece : plane.pieces) {
+    (contacts(scene).covers(piece).empty() ? others : buried).push_back(piece);
+  }
+  if (!others.empty()) result.push_back(only(scene, plane, others));
+  for (const std::uint32_t piece : buried) {
+    SourcePlane& part = result.emplace_back(only(scene, plane, {piece}));
+    std::ranges::copy_if(others, std::back_inserter(part.elsewhere), [&](std::uint32_t other) {
+      return overlap(scene, scene.pieces()[piece], scene.pieces()[other]);
+    });
+    part.covers.insert(part.covers.end(), part.elsewhere.begin(), part.elsewhere.end());
+    others.push_back(piece);
+  }
+}
+
 std::vector<SourcePlane> with_covers(const Scene& scene, std::vector<SourcePlane> planes) {
   std::vector<SourcePlane> result;
   for (SourcePlane& plane : planes) {
     set_covers(scene, plane);
     if (plane.covers.empty() || !have_conflict(scene, plane)) {
       result.push_back(std::move(plane));
-      continue;
-    }
-    for (const std::uint32_t piece : plane.pieces) {
-      SourcePlane& one = result.emplace_back(plane);
-      one.faces = {scene.pieces()[piece].face};
-      one.pieces = {piece};
-      set_covers(scene, one);
+    } else {
+      split_buried(scene, plane, result);
     }
   }
   return result;
@@ -119,8 +144,17 @@ std::vector<SourcePlane> group_by_plane(const Scene& scene, const std::vector<Fa
       if (is_new) {
         const FineNormal fine = fine_normal(normal);
         const Vec3 &second = scene.vertices()[piece.frame[1]], &third = scene.vertices()[piece.frame[2]];
-        planes.push_back(
-            {&panels(scene), {}, {}, {}, {}, kernel::make_direction(std::move(normal)), fine, point, second, third});
+        planes.push_back({&panels(scene),
+                          {},
+                          {},
+                          {},
+                          {},
+                          {},
+                          kernel::make_direction(std::move(normal)),
+                          fine,
+                          point,
+                          second,
+                          third});
       }
       SourcePlane& plane = planes[entry->second];
       if (plane.faces.empty() || plane.faces.back() != id) plane.faces.push_back(id);

@@ -17,15 +17,17 @@ struct SourcePlane {
   std::vector<FaceId> faces;          // ascending
   std::vector<std::uint32_t> pieces;  // their pieces that lie in it, ascending; into Scene::pieces()
   std::vector<PanelId> panels;        // the same region, ascending: sheets of these pieces as they are joined
-  std::vector<std::uint32_t> covers;  // pieces that bury parts of it (scene/contacts.h), ascending
-  kernel::Direction normal;           // front, primitive integers
-  FineNormal fine_normal;             // the same, for plane_crossings.h
-  Vec3 point;                         // a vertex in the plane
-  Vec3 second, third;                 // with `point`, three vertices that run counter-clockwise seen from the front
+  // Pieces in the same plane that hide parts of it: those that bury them (scene/contacts.h), and `elsewhere`.
+  std::vector<std::uint32_t> covers;
+  std::vector<std::uint32_t> elsewhere;  // pieces of the source in another SourcePlane, where what they cover counts
+  kernel::Direction normal;              // front, primitive integers
+  FineNormal fine_normal;                // the same, for plane_crossings.h
+  Vec3 point;                            // a vertex in the plane
+  Vec3 second, third;                    // with `point`, three vertices that run counter-clockwise seen from the front
 };
 
 // Groups faces by exact equality of their oriented planes, in order of first appearance. Where a piece buries some of a
-// plane's pieces and also overlaps others, which it does not bury, each piece is by itself.
+// plane's pieces and also overlaps others, which it does not bury, each buried piece is by itself, less the others.
 std::vector<SourcePlane> group_by_plane(const Scene& scene, const std::vector<FaceId>& faces);
 
 // The plane of each face by itself, with three vertices of that face; the plane as it is if faces overlap in it.
