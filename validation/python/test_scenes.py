@@ -116,6 +116,21 @@ def test_files_with_errors(tmp_path):
         exactff.Scene.read(CORNELL, patches="face")
 
 
+def test_what_solids_bury_is_reported_seen_and_summed():
+    box = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    sides = [[0, 2, 6, 4], [1, 5, 7, 3], [0, 4, 5, 1], [2, 3, 7, 6], [0, 1, 3, 2], [4, 6, 7, 5]]
+    upper = box * [0.5, 0.5, 1] + [0.25, 0.25, 1]
+    scene = exactff.Scene(np.concatenate([box, upper]), sides + [[v + 8 for v in side] for side in sides],
+                          patch=[0] * 6 + [1] * 6, names=["lower", "upper"])
+    contacts = {(one.patch, one.under): one.share for one in scene.report().contacts}
+    assert contacts == pytest.approx({("lower", "upper"): 0.25 / 6, ("upper", "lower"): 0.25 / 2.5})
+    seen = exactff.view(scene, [0.5, 0.5, 1], [0, 0, -1], on="upper:1")
+    assert seen.buried_under == "lower:2" and not len(seen) and seen.open.value == 0
+    matrix = exactff.view_factor_matrix(scene, backs=True, sky=True, accuracy=1e-3)
+    assert [f.value for f in matrix.buried] == pytest.approx([0.25 / 6, 0.1])
+    assert (matrix.row_sums[:, 0] <= 1).all() and (matrix.row_sums[:, 1] >= 1).all()
+
+
 def test_the_report_says_what_info_says():
     for path in (CORNELL, BLINDS):
         scene, info = exactff.Scene.read(path), json.loads(program("info", path, "--json"))

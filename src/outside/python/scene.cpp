@@ -158,6 +158,18 @@ py::list patches_of(const SharedScene& self) {
   return rows;
 }
 
+// Patch, the one it is buried under, area, share.
+py::list contacts_of(const SharedScene& self) {
+  Interrupt interrupt;
+  const auto contacts = interrupt.run([&] { return slips::buried_parts(self.scene()); });
+  py::list result;
+  for (const slips::Contact& one : contacts) {
+    result.append(
+        py::make_tuple(self.scene().name_of(one.patch), self.scene().name_of(one.under), one.area, one.share));
+  }
+  return result;
+}
+
 py::list findings_of(const SharedScene& self) {
   Interrupt interrupt;
   const auto findings = interrupt.run([&] { return slips::diagnose(self.scene()); });
@@ -296,6 +308,7 @@ void bind_scene(py::module_& module) {
       .def("transparent", [](const SharedScene& s) { return names_of(s.scene(), s.scene().transparent()); })
       .def("warnings", &warnings_of)
       .def("findings", &findings_of)
+      .def("contacts", &contacts_of)
       .def("faces_of_shape", &faces_of_shape, py::arg("shape"))
       .def("open_edges",
            [](const SharedScene& s) {

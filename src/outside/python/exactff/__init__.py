@@ -38,7 +38,7 @@ from ._errors import InputError, ModellingWarning, Problem
 from ._pair import DerivativeStatus, Drawing, Enclosure, FormFactor, FormFactors, Gradient, Status, VertexGradient
 from ._radiosity import Balance, Radiosity, radiosity
 from ._receivers import Receivers
-from ._report import Finding, Material, Patch, Report
+from ._report import Contact, Finding, Material, Patch, Report
 from ._scene import Scene
 from ._truth import TruthSummary, truth
 from ._views import (PairOfPatches, Reciprocity, SeenPatch, Share, View, ViewFactor, ViewFactorMatrix, view, view_factor,
@@ -47,8 +47,8 @@ from ._views import (PairOfPatches, Reciprocity, SeenPatch, Share, View, ViewFac
 __version__ = _exactff.version
 
 __all__ = [
-    "Balance", "CheckReport", "DerivativeStatus", "Distribution", "Drawing", "Enclosure", "Finding", "FormFactor", "FormFactors",
-    "Gradient", "Improvement", "InputError", "Material", "ModellingWarning", "PairOfPatches", "Patch", "Problem", "Radiosity", "Receivers",
+    "Balance", "CheckReport", "Contact", "DerivativeStatus", "Distribution", "Drawing", "Enclosure", "Finding", "FormFactor",
+    "FormFactors", "Gradient", "Improvement", "InputError", "Material", "ModellingWarning", "PairOfPatches", "Patch", "Problem", "Radiosity", "Receivers",
     "Reciprocity", "Report", "RowError",
     "Scene", "SeenPatch", "Share", "Status", "TruthSummary", "Verdict", "VertexGradient", "View", "ViewFactor", "ViewFactorMatrix",
     "__version__", "check", "methods", "radiosity", "truth", "view", "view_factor", "view_factor_matrix",

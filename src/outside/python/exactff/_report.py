@@ -34,6 +34,15 @@ class Finding(NamedTuple):
     flag: str
 
 
+class Contact(NamedTuple):
+    """A part of a patch that a closed solid lies on: it neither sends nor receives light."""
+
+    patch: str
+    under: str  #: the patch of the solid's faces
+    area: float  #: in the square of the scene's unit of length; an estimate
+    share: float  #: of the patch's area
+
+
 class Report(NamedTuple):
     """What ``exactff info`` says of a scene. ``print(report)`` shows a table."""
 
@@ -47,6 +56,7 @@ class Report(NamedTuple):
     open_edges: int  #: edges that an odd number of faces use; a closed solid has none
     findings: tuple[Finding, ...]
     warnings: tuple[str, ...]
+    contacts: tuple[Contact, ...] = ()  #: the largest first
 
     def __str__(self) -> str:
         lines = _table([("patch", "faces", "area", "front", "emits"), *map(_row, self.patches)])
@@ -55,6 +65,7 @@ class Report(NamedTuple):
                   _listed("not exactly planar, cut into triangles", self.not_planar),
                   _listed("zero area, ignored", self.ignored), _listed("unusable, left out", self.left_out),
                   f"open edges: {self.open_edges}"]
+        lines += [f"contact: {one.share:.3g} of {one.patch} is buried under {one.under}" for one in self.contacts]
         lines += [f"check: {finding.message}" for finding in self.findings]
         lines += [f"warning: {warning}" for warning in self.warnings]
         return "\n".join(lines)

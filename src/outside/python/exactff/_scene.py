@@ -15,7 +15,7 @@ from ._files import check_existing, require_free
 from ._pair import FormFactor, FormFactors, Status, _Again
 from ._progress import Progress, shown
 from ._receivers import Receivers
-from ._report import Finding, Material, Patch, Report
+from ._report import Contact, Finding, Material, Patch, Report
 
 #: Own faces: None, "auto", "auto:DISTANCE", a name ("floor", "floor:2", "floor:1+2"), indices of faces, or a list of
 #: these for each receiver.
@@ -149,7 +149,8 @@ class Scene:
                       open_edges=scene.open_edges(),
                       findings=tuple(Finding(kind, message, tuple(objects), flag)
                                      for kind, message, objects, flag in scene.findings()),
-                      warnings=tuple(scene.warnings()))
+                      warnings=tuple(scene.warnings()),
+                      contacts=tuple(Contact(*one) for one in scene.contacts()))
 
     def write(self, path: Union[str, os.PathLike[str]], *, encoding: Literal["default", "text", "binary"] = "default",
               existing: Literal["refuse", "replace"] = "refuse") -> None:
