@@ -26,8 +26,7 @@ bool are_straight(const Vec3& a, const Vec3& middle, const Vec3& c) {
 }
 
 void cut_at_junctions(std::vector<EdgeOfPiece>& edges, std::span<const Vec3> vertices) {
-  constexpr std::size_t kMost = 2048;
-  if (edges.size() > kMost) return;
+  if (edges.size() > kMostCut) return;
   std::vector<std::uint32_t> ends;
   for (const EdgeOfPiece& edge : edges) ends.insert(ends.end(), {edge.low, edge.high});
   const auto x_of = [&](std::uint32_t place) { return vertices[place].x; };

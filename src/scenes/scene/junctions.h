@@ -43,8 +43,9 @@ std::ptrdiff_t balance_of(Iterator first, Iterator last) {
 // Whether the middle point lies on the line through the others, which differ from it. Exact.
 [[nodiscard]] bool are_straight(const Vec3& a, const Vec3& middle, const Vec3& c);
 
-// Cuts edges where ends of others lie inside them. Of very many edges none is cut: where all of them have
+// Cuts edges where ends of others lie inside them. Of more than this many edges none is cut: where all of them have
 // about the same x, the time is quadratic.
+inline constexpr std::size_t kMostCut = 2048;
 void cut_at_junctions(std::vector<EdgeOfPiece>& edges, std::span<const Vec3> vertices);
 
 }  // namespace exactff

@@ -6,6 +6,7 @@
 #include "scene/solids.h"
 
 #include <algorithm>
+#include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <numeric>
 
@@ -13,6 +14,7 @@
 #include "kernel/vec.h"
 #include "scene/edges.h"
 #include "scene/junctions.h"
+#include "scene/places.h"
 
 namespace exactff {
 namespace {
@@ -44,10 +46,7 @@ class Dial {
     return at_p != at_q ? at_p - at_q : -kernel::orientation(a_, b_, to_p, to_q);
   }
   // Whether the piece lies on the same side of the edge as the first one, in its plane.
-  [[nodiscard]] bool is_at_zero(std::uint32_t piece) const {
-    const Vec3& to = beside(piece);
-    return !is_clearly_opposite(to) && quadrant(to) == 0;
-  }
+  [[nodiscard]] bool is_at_zero(std::uint32_t piece) const { return quadrant(beside(piece)) == 0; }
 
  private:
   // A corner of the piece off the edge's line.
@@ -55,13 +54,6 @@ class Dial {
     const auto& frame = scene_.pieces()[piece].frame;
     const auto at = [&](int i) -> const Vec3& { return scene_.vertices()[frame[i]]; };
     return are_straight(a_, at(0), b_) ? at(are_straight(a_, at(1), b_) ? 2 : 1) : at(0);
-  }
-  // A filter for flat parts of meshes: each component of a cross product carries 8u of the product of the lengths.
-  [[nodiscard]] bool is_clearly_opposite(const Vec3& v) const {
-    using kernel::difference, kernel::cross, kernel::dot, kernel::length;
-    const Vec3 along = difference(b_, a_), to_zero = difference(zero_, a_), to_v = difference(v, a_);
-    const double size = dot(along, along) * length(to_zero) * length(to_v);
-    return dot(cross(along, to_zero), cross(along, to_v)) < -1e-12 * size;
   }
   // 0: the angle is 0; 1: below a half turn; 2: a half turn; 3: above.
   [[nodiscard]] int quadrant(const Vec3& v) const {
@@ -87,12 +79,14 @@ class SolidFinder {
 
   void find() {
     const SceneEdges& edges = scene_edges(scene_);
+    leave_out_pieces();
+    if (std::ranges::all_of(open_, [](std::uint8_t open) { return open != 0; })) return;
     find_contested();
     std::vector<EdgeOfPiece> contested, rest, unmatched;
     for (std::uint32_t id = 0; id < edges.size(); ++id) {
-      const auto uses = edges.uses(id);
+      const Uses uses = uses_of(id);
       if (contested_[id] == 0) {
-        groups_.join(uses[0].piece(), uses[1].piece());
+        if (!uses.empty()) groups_.join(uses[0].piece(), uses[1].piece());
         continue;
       }
       const SceneEdge& edge = edges.edge(id);
@@ -103,7 +97,7 @@ class SolidFinder {
     for_each_edge(rest, [&](auto first, auto last) { match_across_wedges({first, last}, unmatched); });
     for (const EdgeOfPiece& use : unmatched) open_[use.piece] = 1;
     for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
-      if (open_[piece] != 0 || scene_.pieces()[piece].transparent) open_[groups_.root(piece)] = 1;
+      if (open_[piece] != 0) open_[groups_.root(piece)] = 1;
     }
   }
   // The number of the closed group that the piece belongs to, or kNone.
@@ -113,16 +107,63 @@ class SolidFinder {
   }
 
  private:
-  // Two pieces have the edge, one in each direction, and do not lie on each other.
-  [[nodiscard]] bool has_plain_uses(std::uint32_t id) const {
+  // Those that are transparent, and those with a corner that no other piece has: along the edges to it, nothing ends.
+  void leave_out_pieces() {
+    const auto place = places(scene_);
+    std::vector<std::uint32_t> uses(place.size(), 0);
+    const auto corners = [&](std::uint32_t piece) { return scene_.corners(scene_.pieces()[piece]); };
+    for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
+      open_[piece] = scene_.pieces()[piece].transparent ? 1 : 0;
+      if (open_[piece] != 0) continue;
+      for (const std::uint32_t corner : corners(piece)) ++uses[place[corner]];
+    }
+    for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
+      if (std::ranges::any_of(corners(piece), [&](std::uint32_t c) { return uses[place[c]] < 2; })) open_[piece] = 1;
+    }
+  }
+
+  // By pieces that are not left out.
+  using Uses = boost::container::small_vector<EdgeUse, 4>;
+  [[nodiscard]] Uses uses_of(std::uint32_t id) const {
+    Uses uses;
+    for (const EdgeUse& use : scene_edges(scene_).uses(id)) {
+      if (open_[use.piece()] == 0) uses.push_back(use);
+    }
+    return uses;
+  }
+
+  // Nobody has the edge, or two pieces have it, one in each direction, and do not lie on each other.
+  [[nodiscard]] bool is_plain(std::uint32_t id) const {
     const SceneEdge& edge = scene_edges(scene_).edge(id);
-    const auto uses = scene_edges(scene_).uses(id);
+    const Uses uses = uses_of(id);
+    if (uses.empty()) return true;
     if (uses.size() != 2 || uses[0].upwards() == uses[1].upwards()) return false;
-    return !Dial(scene_, edge.a, edge.b, uses[0].piece()).is_at_zero(uses[1].piece());
+    return are_clearly_opposite(edge, uses[0].piece(), uses[1].piece()) ||
+           !Dial(scene_, edge.a, edge.b, uses[0].piece()).is_at_zero(uses[1].piece());
+  }
+
+  // A filter for meshes. A computed vector from the edge's line to a corner errs by less than 2^-50 of the product of
+  // the lengths that it is made from. Where the sine is above 1e-6, its direction is off by less than 1e-8, so the
+  // cosine of two of them, below -0.01 as computed, is negative. What overflows is left to exact numbers.
+  [[nodiscard]] bool are_clearly_opposite(const SceneEdge& edge, std::uint32_t p, std::uint32_t q) const {
+    constexpr double kLeastSine = 1e-6, kMostCosine = -0.01, kLeastLength = 0x1p-200;
+    const Vec3 &a = place(edge.a), along = kernel::difference(place(edge.b), a);
+    const auto off_line = [&](std::uint32_t piece) {
+      for (const std::uint32_t v : scene_.pieces()[piece].frame) {
+        const Vec3 arm = kernel::difference(place(v), a), off = kernel::cross(along, arm);
+        const double product = kernel::length(along) * kernel::length(arm);
+        if (product >= kLeastLength && kernel::length(off) > kLeastSine * product) return off;
+      }
+      return Vec3{};
+    };
+    const Vec3 off_p = off_line(p), off_q = off_line(q);
+    const double size = kernel::length(off_p) * kernel::length(off_q);
+    return size >= kLeastLength && kernel::dot(off_p, off_q) < kMostCosine * size;
   }
 
   // Edges that are not plain, and those that have a part in common with one that is contested. If a solid has an edge
-  // as a whole, and what touches it there in parts, then neither may be paired before both are cut.
+  // as a whole, and what touches it there in parts, then neither may be paired before both are cut. Of very many, none
+  // is cut (junctions.h).
   void find_contested() {
     std::vector<std::uint32_t> waiting;
     const auto contest = [&](std::uint32_t id) {
@@ -130,8 +171,9 @@ class SolidFinder {
       contested_[id] = 1;
     };
     for (std::uint32_t id = 0; id < contested_.size(); ++id) {
-      if (!has_plain_uses(id)) contest(id);
+      if (!is_plain(id)) contest(id);
     }
+    if (waiting.size() > kMostCut) return;
     while (!waiting.empty()) {
       const std::uint32_t id = waiting.back();
       waiting.pop_back();
@@ -146,7 +188,7 @@ class SolidFinder {
     box.include(b);
     shaft_tree(scene_).visit_where([&](const Box& node, std::size_t) { return meet(node, box); },
                                    [&](std::uint32_t piece, std::size_t) {
-                                     if (scene_.pieces()[piece].transparent) return;
+                                     if (open_[piece] != 0) return;
                                      for (const std::uint32_t other : edges.of_piece(scene_.pieces()[piece])) {
                                        const SceneEdge& edge = edges.edge(other);
                                        if (other != id && have_common_part(a, b, place(edge.a), place(edge.b)))
