@@ -77,6 +77,7 @@ struct Face {
   double out_of_plane = 0.0;  // largest distance of a vertex from the mean plane, divided by the diameter (estimate)
   bool transparent = false;   // occludes nothing; may be a source, and receivers may lie on it
   bool flipped = false;       // Scene::with_flipped has turned it round
+  bool is_twin = false;       // the other side of a face, made by matrix::with_two_sided; it belongs to no solid
   FileNormals file_normals = FileNormals::kNone;
 };
 
@@ -227,6 +228,8 @@ class SceneBuilder {
   // may be added later. Throws std::invalid_argument for a patch or material that this builder has not made.
   void add_face(PatchId patch, MaterialId material, std::vector<std::vector<std::uint32_t>> rings,
                 std::size_t line = 0);
+  // The face added last is the other side of another one (Face::is_twin).
+  void mark_as_twin();
   // The normal that the file states for the face added last, of any length (Face::file_normals).
   void state_normal(const Vec3& normal);
   void warn(Problem warning);

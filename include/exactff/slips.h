@@ -31,6 +31,8 @@ enum class Kind {
   kScale,              // coordinates suggest a wrong unit
 };
 [[nodiscard]] std::string_view to_string(Kind kind);  // "unseen-front"
+// kOpenFloor to kOverlappingSolids: what touches without being buried. That may well be meant.
+[[nodiscard]] bool is_about_contacts(Kind kind);
 
 struct Finding {
   Kind kind{};

@@ -115,8 +115,8 @@ py::tuple view_factor_matrix_of(const std::shared_ptr<SharedScene>& scene, const
   });
   py::list sums;
   for (const matrix::Sum& sum : row_sums(made)) sums.append(py::make_tuple(sum.lower, sum.upper));
-  const py::tuple lists = py::make_tuple(to_list(made.factors.entries), to_list(made.back), to_list(made.open),
-                                       to_list(made.buried));
+  const py::tuple lists =
+      py::make_tuple(to_list(made.factors.entries), to_list(made.back), to_list(made.open), to_list(made.buried));
   return lists + py::make_tuple(sums, reasons, to_tuple(reciprocity),
                                 std::make_shared<MadeMatrix>(scene, std::move(made), options.factors));
 }

@@ -23,6 +23,8 @@ std::string_view to_string(Kind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
+bool is_about_contacts(Kind kind) { return Kind::kOpenFloor <= kind && kind <= Kind::kOverlappingSolids; }
+
 namespace {
 
 struct Turned {

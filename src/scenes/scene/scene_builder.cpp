@@ -107,6 +107,12 @@ void SceneBuilder::state_normal(const Vec3& normal) {
   state().stated_normals.emplace_back(static_cast<FaceId>(count - 1), normal);
 }
 
+void SceneBuilder::mark_as_twin() {
+  if (state().data->faces.empty())
+    refuse_argument("there is no face yet", "mark_as_twin() is about the face added last");
+  state().data->faces.back().is_twin = true;
+}
+
 void SceneBuilder::warn(Problem warning) { state().warnings.add(std::move(warning)); }
 
 void SceneBuilder::read_from(std::filesystem::path file) { state().data->files.push_back(std::move(file)); }

@@ -20,7 +20,10 @@ SceneCopy::SceneCopy(const Scene& scene, const Vec3& origin)
   for (const Vec3& v : scene.vertices()) builder_.add_vertex({v.x - origin.x, v.y - origin.y, v.z - origin.z});
   for (const Material& material : scene.materials()) builder_.add_material(material);
   for (const Patch& patch : scene.patches()) (void)builder_.patch(patch.name);
-  for (const Face& face : scene.faces()) builder_.add_face(face.patch, face.material, rings_of(face));
+  for (const Face& face : scene.faces()) {
+    builder_.add_face(face.patch, face.material, rings_of(face));
+    if (face.is_twin) builder_.mark_as_twin();
+  }
   for (std::size_t f = 0; f < scene.faces().size(); ++f) {
     if (scene.faces()[f].transparent) add_transparent(scene.faces()[f].patch, static_cast<FaceId>(f));
   }
@@ -42,6 +45,7 @@ void SceneCopy::add_twin(const Selection& patch, const Face& face) {
   Rings rings = face.rings;
   for (std::vector<std::uint32_t>& ring : rings) std::ranges::reverse(ring);
   builder_.add_face(patch.patch, face.material, std::move(rings));
+  builder_.mark_as_twin();
 }
 
 std::optional<Scene> near_origin(const Scene& scene) {

@@ -107,13 +107,15 @@ class SolidFinder {
   }
 
  private:
-  // Those that are transparent, and those with a corner that no other piece has: along the edges to it, nothing ends.
+  // Those that are transparent, twins (Face::is_twin), and those with a corner that no other piece has: along the edges
+  // to it, nothing ends.
   void leave_out_pieces() {
     const auto place = places(scene_);
     std::vector<std::uint32_t> uses(place.size(), 0);
     const auto corners = [&](std::uint32_t piece) { return scene_.corners(scene_.pieces()[piece]); };
     for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
-      open_[piece] = scene_.pieces()[piece].transparent ? 1 : 0;
+      const Piece& own = scene_.pieces()[piece];
+      open_[piece] = own.transparent || scene_.face(own.face).is_twin ? 1 : 0;
       if (open_[piece] != 0) continue;
       for (const std::uint32_t corner : corners(piece)) ++uses[place[corner]];
     }

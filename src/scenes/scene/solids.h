@@ -5,7 +5,8 @@
 // box in its corner. An edge that only two pieces have, in no part of which there is another, pairs these; pieces that
 // such edges connect are paired first at the others, since behind the walls of two rooms that touch, wedges overlap. A
 // solid is a set of pieces that pairs connect, with every edge of each of them paired. Edges are matched by the
-// positions of their ends, and cut at T-junctions. Transparent pieces belong to no solid.
+// positions of their ends, and cut at T-junctions. Transparent pieces, and twins of faces (Face::is_twin), belong to no
+// solid.
 //
 // A solid of positive volume has its fronts outside, as a box has. One of negative volume has them inside, as a room
 // has. That of a sheet with two faces has no volume.

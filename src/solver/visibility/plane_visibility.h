@@ -29,8 +29,8 @@ struct View {
 
   const Scene& scene;
   Vec3 x;
-  Vec3 n;         // the receiver's normal
-  OwnPieces own;  // neither occlude nor illuminate
+  Vec3 n;          // the receiver's normal
+  OwnPieces own;   // neither occlude nor illuminate
   bool is_buried;  // see scene/contacts.h: nothing is seen
 
   [[nodiscard]] bool is_own(std::uint32_t piece) const { return own.contains(piece); }

@@ -66,7 +66,8 @@ class Report(NamedTuple):
                   _listed("zero area, ignored", self.ignored), _listed("unusable, left out", self.left_out),
                   f"open edges: {self.open_edges}"]
         lines += [f"contact: {one.share:.3g} of {one.patch} is buried under {one.under}" for one in self.contacts]
-        lines += [f"check: {finding.message}" for finding in self.findings]
+        about_contacts = {"on-open-floor", "no-bottom", "near-contact", "overlapping-solids"}
+        lines += [f"{'note' if finding.kind in about_contacts else 'check'}: {finding.message}" for finding in self.findings]
         lines += [f"warning: {warning}" for warning in self.warnings]
         return "\n".join(lines)
 
