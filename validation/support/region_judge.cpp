@@ -129,6 +129,12 @@ std::set<std::string> expect_names_on_what_they_name(const Scene& scene, const R
     const FaceId face = scene.pieces()[p].face;
     if (is_own[p]) own.push_back({.patch = scene.face(face).patch, .face = face, .scene = scene.id()});
   }
+  // Faces that are not planar, of which some pieces are own, cannot be made transparent in part.
+  for (std::size_t p = 0; p < is_own.size(); ++p) {
+    const FaceId face = scene.pieces()[p].face;
+    const auto is_of_own = [&](const Selection& one) { return one.face == face; };
+    if (!is_own[p] && std::ranges::any_of(own, is_of_own)) return {};
+  }
   const Scene others = scene.with_transparent(own);
   std::set<std::string> found;
   for (const ViewProjection projection : {ViewProjection::kNusselt, ViewProjection::kFisheye}) {

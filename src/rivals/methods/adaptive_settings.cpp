@@ -47,7 +47,8 @@ Estimate RecursionEvaluator::estimate(const AdaptiveSource& source, const Rgb& r
   const kernel::StandardArithmetic arithmetic;
   const Rgb rho = scene_.receiver_reflectance(receiver_.on);
   const double rho_b = Rgb{rho.r * radiosity.r, rho.g * radiosity.g, rho.b * radiosity.b}.largest();
-  AdaptiveResult found = visibility == nullptr
+  AdaptiveResult found = is_buried_ ? AdaptiveResult{}
+                         : visibility == nullptr
                              ? solver_.form_factor(receiver_, source, rho_b, options_)
                              : AdaptiveInside::form_factor(solver_, receiver_, source, rho_b, options_, *visibility);
   Estimate result{found.form_factor, {}};

@@ -20,7 +20,10 @@ class RecursionEvaluator : public Evaluator {
  public:
   RecursionEvaluator(const AdaptiveSolver& solver, const Scene& scene, const AdaptiveOptions& options)
       : scene_(scene), solver_(solver), options_(options) {}
-  void look_from(const Receiver& receiver) override { receiver_ = receiver; }
+  void look_from(const Receiver& receiver) override {
+    receiver_ = receiver;
+    is_buried_ = buried_under(scene_, receiver).has_value();
+  }
 
   // Splitting stops at this number of leaves; 0: no bound.
   void stop_at(std::uint64_t leaves) { options_.most_leaves = leaves; }
@@ -44,6 +47,7 @@ class RecursionEvaluator : public Evaluator {
   const AdaptiveSolver& solver_;
   AdaptiveOptions options_;
   Receiver receiver_;
+  bool is_buried_ = false;  // the receiver: it sees nothing
   bool keeps_results_ = false;
   std::vector<AdaptiveResult> results_;
 };

@@ -3,6 +3,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "methods/adaptive_settings.h"
 #include "methods/method_files.h"
 #include "text/choice_text.h"
 
@@ -48,7 +49,9 @@ class ExposedScene : public PreparedScene {
     return inner_->prepare_source(selection);
   }
   [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
-    return std::make_unique<ExposedEvaluator>(scene(), inner_->configure(settings));
+    std::unique_ptr<Evaluator> evaluator = inner_->configure(settings);
+    if (dynamic_cast<const RecursionEvaluator*>(evaluator.get()) != nullptr) return evaluator;  // knows it itself
+    return std::make_unique<ExposedEvaluator>(scene(), std::move(evaluator));
   }
 
  private:

@@ -1,5 +1,6 @@
 // The names of a receiver's own faces.
 #include <algorithm>
+#include <boost/container/small_vector.hpp>
 
 #include "exactff/error.h"
 #include "exactff/receiver.h"
@@ -32,10 +33,10 @@ std::optional<FaceId> buried_under(const Scene& scene, const Receiver& receiver)
   for (const FaceId id : receiver.on) {
     const Face& face = scene.face(id);
     if (face.piece_count == 0) continue;
-    std::vector<std::uint32_t> pieces;  // in the plane that the receiver lies in
+    boost::container::small_vector<std::uint32_t, 16> pieces;  // in the plane that the receiver lies in
     for (std::uint32_t p = face.first_piece; p < face.first_piece + face.piece_count; ++p) pieces.push_back(p);
     if (face.shape != FaceShape::kPlanar) pieces = {own_piece(scene, id, receiver.point)};
-    const Burial burial = burial_of(scene, pieces, receiver.point, receiver.normal);
+    const Burial burial = burial_of(scene, {pieces.data(), pieces.size()}, receiver.point, receiver.normal);
     if (burial.is_exposed) return std::nullopt;
     if (!under) under = burial.under;
   }

@@ -107,20 +107,26 @@ class SolidFinder {
   }
 
  private:
-  // Those that are transparent, twins (Face::is_twin), and those with a corner that no other piece has: along the edges
-  // to it, nothing ends.
+  // Those that are transparent, twins (Face::is_twin), and those with a corner that no other piece has, but in the
+  // middle of a straight side: along the edges to it, nothing ends.
   void leave_out_pieces() {
-    const auto place = places(scene_);
-    std::vector<std::uint32_t> uses(place.size(), 0);
+    const auto at = places(scene_);
+    std::vector<std::uint32_t> uses(at.size(), 0);
     const auto corners = [&](std::uint32_t piece) { return scene_.corners(scene_.pieces()[piece]); };
     for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
       const Piece& own = scene_.pieces()[piece];
       open_[piece] = own.transparent || scene_.face(own.face).is_twin ? 1 : 0;
       if (open_[piece] != 0) continue;
-      for (const std::uint32_t corner : corners(piece)) ++uses[place[corner]];
+      for (const std::uint32_t corner : corners(piece)) ++uses[at[corner]];
     }
     for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
-      if (std::ranges::any_of(corners(piece), [&](std::uint32_t c) { return uses[place[c]] < 2; })) open_[piece] = 1;
+      const auto ring = corners(piece);
+      for (std::size_t i = 0; i < ring.size() && open_[piece] == 0; ++i) {
+        const auto vertex = [&](std::size_t k) -> const Vec3& { return place(ring[k % ring.size()]); };
+        const bool is_alone =
+            uses[at[ring[i]]] < 2 && !are_straight(vertex(i + ring.size() - 1), vertex(i), vertex(i + 1));
+        if (is_alone) open_[piece] = 1;
+      }
     }
   }
 
