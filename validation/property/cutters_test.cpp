@@ -53,6 +53,7 @@ TEST_P(Cutters, AreTheFacesThatAloneHideSomething) {
     Random random(seed_of(i));
     const generate::PlainScene plain = GetParam().make(random);
     const Scene scene = generate::build(plain);
+    if (some_is_buried(scene)) continue;  // what hides only buried parts is listed
     const ExactSource source(scene, scene.select(plain.source));
     expect_listed_as_found(scene, receiver_in(scene, plain), source);
     if (HasFailure()) return;

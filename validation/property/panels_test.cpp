@@ -52,6 +52,8 @@ TEST_P(PanelsOf, CutPolygonsHideWhatTheyHidBefore) {
     const PlainScene cut = all_retriangulated(plain, random);
     const Scene scene = generate::build(cut);
     joined += has_sheets(scene) ? 1 : 0;
+    // Of faces that lie on each other, the way they are cut tells which belong to a solid.
+    if (some_is_buried(scene) || some_is_buried(generate::build(plain))) continue;
     const ExactSource source(scene, scene.select(cut.source));
     const FormFactor found = exact_form_factor(scene, generate::receiver_of(cut), source, kBothEngines);
     ASSERT_EQ(answer_of(found), answer(plain)) << "seed " << seed_of(i) << '\n' << generate::to_obj(plain);

@@ -219,12 +219,8 @@ Camera default_camera(const Scene& scene, const CameraWishes& wishes, const Size
   if (scene.pieces().empty()) return like;
   const Extents box = extents_of(scene);
   look_from_outside(scene, box, like, size, best);
-  // From outside, a closed room shows few fronts: bottoms of what stands on its floor, which are seen before the
-  // floor's back.
-  constexpr double kHardlyAny = 0.02, kFew = 0.25;
-  if (best.score < kHardlyAny && !like.ortho) {
-    for (int number = 0; number < 4; ++number) best.offer(scene, camera_within(box, {number}, like), 1.0);
-  }
+  // From outside, a closed room shows no front, or few.
+  constexpr double kFew = 0.25;
   if (best.score < kFew && !like.ortho) {
     like.fov = wishes.fov.value_or(kWideFov);
     look_from_inside(scene, box, like, size, best);

@@ -8,6 +8,9 @@
 // positions of their ends, and cut at T-junctions. Transparent pieces, and twins of faces (Face::is_twin), belong to no
 // solid.
 //
+// Where faces lie on each other with the same front, which of them belongs to a solid depends on their order and on how
+// they are cut.
+//
 // A solid of positive volume has its fronts outside, as a box has. One of negative volume has them inside, as a room
 // has. That of a sheet with two faces has no volume.
 #pragma once

@@ -122,7 +122,8 @@ TEST_F(RenderCommand, BadInputIsRefusedWithWords) {
   refused({"-o", directory_.path().string() + "/.png/"}, "extension");
   refused({"-o", image, "--eye", "1", "2", "3"}, "--eye is given without --look");
   refused({"-o", image, "--eye", "1", "2", "3", "--look", "1", "2", "3"}, "are the same");
-  refused({"-o", image, "--eye", "1", "2", "3", "--look", "1", "2", "9"}, "parallel to the line of sight");
+  refused({"-o", image, "--eye", "1", "2", "3", "--look", "1", "9", "3", "--up", "0", "1", "0"},
+          "parallel to the line of sight");
   refused({"-o", image, "--eye", "1", "2", "x", "--look", "1", "9", "3"}, "'x'");
   refused({"-o", image, "--eye", "1", "2", "--look", "1", "9", "3"}, "--eye takes three numbers");
   refused({"-o", image, "--fov", "180"}, "angle of view");
