@@ -150,7 +150,8 @@ void print_contacts(const Scene& scene) {
 
 void print_findings(const std::vector<slips::Finding>& findings) {
   for (const slips::Finding& finding : findings)
-    std::cout << (slips::is_about_contacts(finding.kind) ? "note: " : "check: ") << text::printable(finding.words.message()) << '\n';
+    std::cout << (slips::is_about_contacts(finding.kind) ? "note: " : "check: ")
+              << text::printable(finding.words.message()) << '\n';
 }
 
 void print_suggestion(const Scene& scene, const flags::SceneArguments& arguments) {

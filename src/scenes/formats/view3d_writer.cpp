@@ -6,6 +6,7 @@
 #include "formats/mesh_input.h"
 #include "formats/output_faces.h"
 #include "formats/output_names.h"
+#include "text/number_text.h"
 #include "text/phrases.h"
 
 namespace exactff::formats {
@@ -74,7 +75,9 @@ class View3dWriter {
   void append_obstruction(const OutputFace& face) {
     out_ += "O " + std::to_string(++count_);
     append_corners(face);
-    out_ += ' ' + names_[index_of(scene_.face(face.face).patch)] + '\n';
+    const std::string& name = names_[index_of(scene_.face(face.face).patch)];
+    const bool is_number = text::parse_number(name).fault == text::NumberFault::kNone;
+    out_ += (is_number ? " 0 0 0 " : " ") + name + '\n';  // after base, combination and emittance, a number is a name
   }
   void append_surface(const OutputFace& output) {
     const Face& face = scene_.face(output.face);
