@@ -77,7 +77,7 @@ class CellJudge {
     view_factors::PairMemory memory;
     std::optional<view_factors::Pair> pair;
     if (sight) {
-      pair.emplace(scene_, std::move(*sight), faces_of(scene_, receiver), nullptr, memory, 0);
+      pair.emplace(scene_, std::move(*sight), receiver.face, nullptr, memory, 0);
       pair->set_limits({.rounding = 1e-9});
       shares = pair->cells(0.0, {.cost = kCells, .effort = std::uint64_t{1} << 62});
     }

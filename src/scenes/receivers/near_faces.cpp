@@ -207,8 +207,9 @@ std::vector<FaceId> HidingFaces::of(const Receiver& receiver) {
 
 // Whether another piece near the face lies nearly in the plane of one of its pieces.
 bool HidingFaces::are_possible_on(FaceId id) {
-  const auto [known, is_new] = possible_.try_emplace(id, false);
-  if (!is_new) return known->second;
+  const auto known = possible_.find(id);
+  if (known != possible_.end()) return known->second;
+  bool found = false;
   const double scale = extent(scene_).scale, tolerance = tolerance_of_computed_points(scene_);
   const auto at = [&](std::uint32_t vertex) { return kernel::scaled(scene_.vertices()[vertex], scale); };
   for (std::uint32_t own = scene_.face(id).first_piece; own < scene_.face(id).first_piece + scene_.face(id).piece_count;
@@ -227,12 +228,12 @@ bool HidingFaces::are_possible_on(FaceId id) {
         low = std::min(low, height);
         high = std::max(high, height);
       }
-      known->second = low <= tolerance * scale && high >= -tolerance * scale;
-      return !known->second;
+      found = low <= tolerance * scale && high >= -tolerance * scale;
+      return !found;
     });
-    if (known->second) break;
+    if (found) break;
   }
-  return known->second;
+  return possible_[id] = found;
 }
 
 }  // namespace exactff

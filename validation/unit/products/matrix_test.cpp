@@ -453,7 +453,7 @@ TEST(Matrix, TheTwinOfABentFaceIsItsTrianglesTurnedRound) {
       const double angle = 6.0 * static_cast<double>(i) / static_cast<double>(corners);
       ring.push_back({std::cos(angle), std::sin(angle), height * anywhere(random)});
     }
-    std::ranges::rotate(ring, ring.begin() + static_cast<std::ptrdiff_t>(random() % corners));
+    std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(random() % corners), ring.end());
     return ring;
   };
   for (int i = 0; i < 8; ++i) {
