@@ -59,8 +59,9 @@ class CellJudge {
       if (scene_.pieces_of(face).size() != 1 || scene_.face(face).transparent) continue;
       Selection whole = to;
       whole.face = face;
-      for (const Part& receiver : parts_of(exact_, from)) {
-        for (const Part& source : parts_of(exact_, whole)) judge_pair(receiver, source, whole);
+      for (const Part& receiver : parts_of(exact_, from, view_factors::PartsOf::kExposed)) {
+        for (const Part& source : parts_of(exact_, whole, view_factors::PartsOf::kExposed))
+          judge_pair(receiver, source, whole);
       }
     }
   }
