@@ -68,7 +68,7 @@ inline constexpr std::array<std::string_view, 3> kChannelNames = {"red", "green"
 
 struct Solution {
   std::vector<Selection> patches;
-  std::vector<double> areas;        // of what is not buried (scene.h), in the square of the scene's unit of length
+  std::vector<double> areas;        // of the parts not buried (scene.h), in the square of the scene's unit of length
   std::array<Channel, 3> channels;  // of Kd and Ke
   Claim claim = Claim::kZero;       // the weakest of all view factors between patches
   Claim claim_of_balance = Claim::kZero;

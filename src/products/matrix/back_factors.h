@@ -33,7 +33,7 @@ class BackFactors {
   double area_;
 };
 
-// For factors to what is no patch: the other direction, which nobody asks for, may give this one.
+// For factors to columns that are not patches: the other direction is not asked for, but may give this one.
 [[nodiscard]] ViewFactorOptions as_one_direction(const ViewFactorOptions& options);
 
 // Also where rows are equal, and so one pair gives several entries. `finer`: see Pairs::compute.

@@ -179,7 +179,7 @@ class FileReader {
                           number_or(variation_, kNothing)});
   }
 
-  // An empty field is what is not known.
+  // An empty field means that the value is not known.
   double number_or(std::optional<std::size_t> column, double otherwise) {
     return column && !csv_.field(*column).empty() ? csv_.number(*column) : otherwise;
   }

@@ -140,7 +140,7 @@ class SolidFinder {
     return uses;
   }
 
-  // Nobody has the edge, or two pieces have it, one in each direction, and do not lie on each other.
+  // No piece has the edge, or two have it, one in each direction, and do not lie on each other.
   [[nodiscard]] bool is_plain(std::uint32_t id) const {
     const SceneEdge& edge = scene_edges(scene_).edge(id);
     const Uses uses = uses_of(id);

@@ -33,7 +33,7 @@ class Pairs {
   [[nodiscard]] std::size_t pair_of(std::size_t entry) const { return pair_of_[entry]; }
   [[nodiscard]] double area_from(std::size_t row) const;
   [[nodiscard]] double area_to(std::size_t column) const;
-  // Of the area of a row's patch, what is not buried: a share of exactly 1 if nothing is, exactly 0 if all is.
+  // The share of the area of a row's patch that is not buried: exactly 1 if nothing is, exactly 0 if all is.
   [[nodiscard]] kernel::Disc exposed_share(std::size_t row) const;
   // Whether closed surfaces stand around all that the row's patch sees (enclosures.h), if that can be proved.
   [[nodiscard]] bool is_enclosed(std::size_t row) const;
