@@ -53,7 +53,6 @@ struct TruthRow {
 struct Truth {
   std::string file;
   std::string column;                // the column that `value` was read from
-  std::vector<std::string> header;   // the comment lines of the file, without their '#'
   std::vector<std::string> sources;  // in order of first appearance; one empty name if the file has no such column
   std::vector<std::string> faces;    // faces that receivers lie on; the first name is empty and stands for none
   bool has_points = false;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "exactff/progress.h"
 
@@ -55,8 +56,15 @@ struct Summary {
 // `existing` says to refuse.
 void require_free(const std::filesystem::path& file, Existing existing);
 
-// The command that wrote a shard: "truth" or "matrix"; empty if the file is no shard or cannot be read.
-[[nodiscard]] std::string command_of_shard(const std::filesystem::path& file);
+// Sees the text of rows, which may begin and end anywhere.
+using See = std::function<void(std::string_view text)>;
+
+// Merges all shards of one request, of a truth file or of a matrix, into the bytes that the same request without shards
+// gives. The order of the shards does not matter. Throws one InputError that lists all problems: shards that are
+// missing, duplicate, damaged, unfinished or of another request. The file appears complete or not at all. `see` gets
+// all rows.
+Summary merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& file,
+              Existing existing = Existing::kRefuse, const RowHooks& hooks = {}, const See& see = {});
 
 // Finished work, stored in a file beside the result so that an interrupted run can be resumed. Each piece of work has a
 // name. Damaged pieces in the file count as not done. All functions may be called from any thread.

@@ -19,6 +19,7 @@
 #include "exactff/jobs.h"
 #include "exactff/progress.h"
 #include "exactff/scene.h"
+#include "exactff/table.h"
 #include "exactff/view_factors.h"
 
 namespace exactff::matrix {
@@ -98,25 +99,23 @@ inline constexpr std::string_view kBack = "(back)";
 inline constexpr std::string_view kOpen = "(open)";
 inline constexpr std::string_view kBuried = "(buried)";
 
-// A row for each entry: from,to,factor,lower,upper,claim,way,accurate,area_from,area_to,cells,event_cells,limit.
-// Doubles read back to the same bits.
-[[nodiscard]] std::string csv_text(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options);
+// A row for each entry: from,to,factor,lower,upper,claim,way,accurate,area_from,area_to,cells,event_cells,limit. The
+// head has the options of the view factors and all else that the entries depend on.
+[[nodiscard]] table::Table table_of(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options);
 
-// A matrix as its CSV file has it: with names instead of patches, otherwise to the same bits.
-struct Table {
+// A matrix as its table has it: with names instead of patches, otherwise to the same bits.
+struct NamedMatrix {
   std::string file;
-  std::vector<std::string> header;             // the comment lines, without their '#'
+  table::Head head;
   std::vector<std::string> from, to;           // `to` without the additional columns
   std::vector<ViewFactor> entries;             // row by row
-  std::vector<ViewFactor> back, open, buried;  // for each row; empty if the file does not have them
-  std::vector<std::uint32_t> lines;  // of all entries, in the order of the file: row by row, with back and open
-  bool has_old_claims = false;       // "topology-proved" or "statistical", which are read as `estimated`
+  std::vector<ViewFactor> back, open, buried;  // for each row; empty if the table does not have them
+  std::vector<std::size_t> lines;  // of all entries, in the order of the table: row by row, with back and open
 };
-// Reads what csv_text wrote, also before `way` and `limit` were columns, and drafts: until 2026-11-26 there was a way
-// `views`, means of whole views, which is read as `points`. Throws one InputError with file:line for every problem.
-[[nodiscard]] Table read_csv(const std::filesystem::path& file);
-// Whether a file begins like one of these, by its content.
-[[nodiscard]] bool is_csv(const std::filesystem::path& file);
+// Reads what table_of gives, in any format. Throws one InputError with file:line for every problem.
+[[nodiscard]] NamedMatrix read_named(const std::filesystem::path& file);
+// The options with which the view factors of a table were computed, by its head.
+[[nodiscard]] ViewFactorOptions options_of(const table::Head& head);
 
 // A matrix that is computed by way of a journal (jobs.h). Keeps a reference to the scene.
 struct Request {
@@ -125,13 +124,10 @@ struct Request {
   Options options;
   jobs::Shard shard;  // if not 1/1, the file holds the pairs of this shard, for merge()
 };
-// Computes the matrix and writes the bytes of csv_text. Throws InputError if the request, the file or the journal is
+// Computes the matrix and writes its table as CSV. Throws InputError if the request, the file or the journal is
 // unusable, or if nothing can be written; throws Cancelled if the hooks cancel. Whatever is thrown, and even if the
 // process is killed, the finished pairs in the journal stay valid.
 jobs::Summary write(const Request& request, const std::filesystem::path& file,
-                    jobs::Existing existing = jobs::Existing::kRefuse, const jobs::RowHooks& hooks = {});
-// Merges all shards of one request into the same bytes as one write() without shards, as truth::merge does.
-jobs::Summary merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& file,
                     jobs::Existing existing = jobs::Existing::kRefuse, const jobs::RowHooks& hooks = {});
 // The matrix in the file that write() or merge() made for this request. Throws InputError if the file is damaged or of
 // other patches.

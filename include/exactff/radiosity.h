@@ -143,10 +143,10 @@ struct Origin {
 // A row for each patch and channel: patch,channel,radiosity,lower,upper,irradiance,irradiance_lower,irradiance_upper,
 // claim,area, and variation if it is set. What is infinite or not known is empty, and the claim is then "no bound". The
 // head states the scene's hash, the origin, what was asked for, and how many view factors are wider.
-[[nodiscard]] std::string csv_text(const Scene& scene, const Solution& solution, const ViewFactorOptions& options,
-                                   const Origin& origin = {});
+[[nodiscard]] table::Table table_of(const Scene& scene, const Solution& solution, const ViewFactorOptions& options,
+                                    const Origin& origin = {});
 
-// What csv_text wrote.
+// What such a table holds.
 struct SolutionFile {
   struct Row {
     std::string patch;
@@ -154,22 +154,22 @@ struct SolutionFile {
     BoundedValue radiosity;   // upper infinite: no bound
     BoundedValue irradiance;
     double area = 0.0;
-    double variation = 0.0;  // NaN: there is none
+    double variation = 0.0;           // NaN: there is none
+    std::optional<Claim> claim = {};  // nothing: no bound
   };
   std::string file;
   std::string scene_hash;
-  Origin origin;
-  double accuracy = 0.0;  // of the view factors, as asked for; 0 if the head does not say
-  std::uint64_t budget = 0;
-  std::size_t wide = 0;  // as in Solution
+  Origin origin = {};
+  ViewFactorOptions options = {};  // as asked for
+  std::size_t wide = 0;            // as in Solution
   std::optional<double> width = {};
   Claim claim = Claim::kZero;  // the weakest of all rows with bounds
-  std::vector<Row> rows;
+  std::vector<Row> rows = {};
 };
-// Throws one InputError with file:line for every problem.
-[[nodiscard]] SolutionFile read_csv(const std::filesystem::path& file);
+// In any format. Throws one InputError with file:line for every problem.
+[[nodiscard]] SolutionFile read_solution(const std::filesystem::path& file);
 
-// What csv_text was given, but for what no row has: the balance, claim_of_balance, and why there is no bound. Throws
+// What table_of was given, but for what no row has: the balance, claim_of_balance, and why there is no bound. Throws
 // InputError if the file is of another scene, by its hash and names.
 [[nodiscard]] Solution solution_of(const Scene& scene, const SolutionFile& file);
 

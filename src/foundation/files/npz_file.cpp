@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <boost/crc.hpp>
+#include <charconv>
 #include <limits>
 
 #include "kernel/expect.h"
 #include "text/characters.h"
 #include "text/encoding.h"
 #include "text/refuse.h"
+#include "text/text_file.h"
+#include "text/text_lines.h"
 
 namespace exactff::files {
 namespace {
@@ -98,6 +101,82 @@ void NpzFile::commit() {
   append(bytes_of_all(kEnd, std::uint16_t{0}, std::uint16_t{0}, count, count, size, static_cast<std::uint32_t>(begin),
                       std::uint16_t{0}));
   file_.commit();
+}
+
+// --- Reading ---
+
+namespace {
+
+template <class T>
+T number_at(std::string_view bytes, std::size_t at) {
+  T value{};
+  if (at + sizeof(T) <= bytes.size()) read_little_endian(bytes.substr(at, sizeof(T)), std::span<T>(&value, 1));
+  return value;
+}
+
+// The value after "'KEY': " in the header of an array.
+std::string_view value_of(std::string_view header, std::string_view key) {
+  const std::size_t at = header.find(key);
+  return at == std::string_view::npos ? std::string_view() : header.substr(at + key.size());
+}
+
+}  // namespace
+
+NpzReader::NpzReader(const std::filesystem::path& path)
+    : path_(path), bytes_(text::read_file(path, "a table in an archive of NumPy")) {
+  constexpr std::size_t kHeader = 30, kNpyStart = 10;
+  const std::string_view all = bytes_;
+  for (std::size_t at = 0; number_at<std::uint32_t>(all, at) == kLocalHeader;) {
+    const auto method = number_at<std::uint16_t>(all, at + 8);
+    const auto checksum = number_at<std::uint32_t>(all, at + 14), size = number_at<std::uint32_t>(all, at + 18);
+    const std::size_t name = number_at<std::uint16_t>(all, at + 26), extra = number_at<std::uint16_t>(all, at + 28);
+    const std::size_t start = at + kHeader + name + extra;
+    if (method != kStored) damaged("holds compressed arrays");
+    if (start + size > all.size()) damaged("is cut off");
+    const std::string_view content = all.substr(start, size);
+    boost::crc_32_type found;
+    found.process_bytes(content.data(), content.size());
+    if (found.checksum() != checksum) damaged("has an array whose checksum is wrong");
+    const std::size_t header = kNpyStart + number_at<std::uint16_t>(content, 8);
+    if (header > content.size()) damaged("has an array that is cut off");
+    arrays_.push_back({std::string(all.substr(at + kHeader, name)), content.substr(0, header), content.substr(header)});
+    at = start + size;
+  }
+  if (arrays_.empty()) damaged("is no archive of NumPy arrays");
+}
+
+const NpzReader::Array* NpzReader::find(std::string_view name) const {
+  const auto found = std::ranges::find(arrays_, std::string(name) + ".npy", &Array::name);
+  return found == arrays_.end() ? nullptr : &*found;
+}
+
+const NpzReader::Array& NpzReader::array(std::string_view name, std::string_view type) const {
+  const Array* const found = find(name);
+  if (found == nullptr) damaged("has no array " + text::in_quotes(name));
+  if (!value_of(found->header, "'descr': '").starts_with(type)) {
+    damaged("has other elements than " + text::in_quotes(type) + " in its array " + text::in_quotes(name));
+  }
+  return *found;
+}
+
+std::vector<std::string> NpzReader::texts(std::string_view name) const {
+  const Array& found = array(name, "<U");
+  const std::string_view width_text = value_of(found.header, "'descr': '<U");
+  std::size_t width = 0;
+  std::from_chars(width_text.data(), width_text.data() + width_text.size(), width);
+  if (width == 0 || found.elements.size() % (4 * width) != 0) damaged("has a damaged array " + text::in_quotes(name));
+  std::vector<std::string> texts(found.elements.size() / (4 * width));
+  for (std::size_t i = 0; i < found.elements.size() / 4; ++i) {
+    const auto code = number_at<std::uint32_t>(found.elements, 4 * i);
+    if (code != 0) text::append_utf8(texts[i / width], code);
+  }
+  return texts;
+}
+
+std::string NpzReader::word(std::string_view name) const { return std::string(elements(name, "|S")); }
+
+void NpzReader::damaged(const std::string& what) const {
+  text::refuse(path_, what, "its arrays cannot be read", "write it again");
 }
 
 }  // namespace exactff::files

@@ -52,4 +52,39 @@ class NpzFile {
   std::vector<Entry> entries_;
 };
 
+// Reads such an archive: stored arrays of one axis, or words. Throws InputError, with what to do, for another file, one
+// that is damaged, and an array that is missing or holds other elements.
+class NpzReader {
+ public:
+  explicit NpzReader(const std::filesystem::path& path);
+
+  [[nodiscard]] bool has(std::string_view name) const { return find(name) != nullptr; }
+  template <class T>
+  [[nodiscard]] std::vector<T> numbers(std::string_view name) const {
+    const std::string_view bytes = elements(name, kNpyType<T>);
+    std::vector<T> values(bytes.size() / sizeof(T));
+    read_little_endian(bytes, std::span<T>(values));
+    return values;
+  }
+  [[nodiscard]] std::vector<std::string> texts(std::string_view name) const;  // in UTF-8
+  [[nodiscard]] std::string word(std::string_view name) const;
+
+ private:
+  struct Array {
+    std::string name;
+    std::string_view header, elements;
+  };
+  [[nodiscard]] const Array* find(std::string_view name) const;
+  // Of this type, or of one that begins with it.
+  [[nodiscard]] const Array& array(std::string_view name, std::string_view type) const;
+  [[nodiscard]] std::string_view elements(std::string_view name, std::string_view type) const {
+    return array(name, type).elements;
+  }
+  [[noreturn]] void damaged(const std::string& what) const;
+
+  std::filesystem::path path_;
+  std::string bytes_;
+  std::vector<Array> arrays_;
+};
+
 }  // namespace exactff::files

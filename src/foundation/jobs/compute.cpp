@@ -1,5 +1,6 @@
 #include "jobs/compute.h"
 
+#include <algorithm>
 #include <chrono>
 #include <mutex>
 #include <optional>
@@ -8,10 +9,13 @@
 #include <thread>
 #include <vector>
 
+#include "files/apart.h"
 #include "jobs/leader.h"
+#include "jobs/shards.h"
 #include "jobs/workers.h"
 #include "kernel/expect.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff::jobs {
 namespace {
@@ -118,18 +122,16 @@ class Computation {
   std::vector<SlowRow> slow_;
 };
 
-}  // namespace
-
-void compute_missing(const Rows& rows, RowJournal& journal, Team* team, const RowHooks& hooks, Summary& summary) {
-  Computation(rows, journal, team, hooks).run(summary);
-}
-
+// A file in which nothing of the journal is lost, whatever happens to it.
 files::FailureAdvice advice_while_in_journal(const RowJournal& journal) {
   return {"all rows are finished and kept in " + journal.path().string() + "; the file needs the same space again",
           "free some space, then continue with --resume"};
 }
 
-// A chunk may have been computed in several blocks. The result must not depend on where it was divided.
+using TakeChunk = std::function<bool(Range range, const std::string& text)>;
+
+// Calls take(range, text) for every chunk, in order. Requires every row of the shard to be in the journal. A chunk may
+// have been computed in several blocks; the result must not depend on where it was divided.
 void for_each_chunk(const Rows& rows, const RowJournal& journal, const RowHooks& hooks, const TakeChunk& take) {
   const std::uint32_t chunk = rows.plan().chunk;
   Pace pace("writing the file", rows.shard_rows(), hooks);
@@ -149,45 +151,137 @@ void for_each_chunk(const Rows& rows, const RowJournal& journal, const RowHooks&
   EXACTFF_EXPECT(taken == rows.shard_rows());
 }
 
-void write_rows(const Rows& rows, const RowJournal& journal, const fs::path& file, const RowHooks& hooks,
-                const TakeChunk& see) {
-  WholeFile whole(file, advice_while_in_journal(journal));
+// The rows after their head: one after another, or the chunks of a shard as blocks.
+class TableFile {
+ public:
+  TableFile(const fs::path& path, const std::string& head, bool numbered, const See& see,
+            const files::FailureAdvice& advice = {})
+      : file_(path, advice), numbered_(numbered), see_(see) {
+    file_.append(head);
+  }
+
+  [[nodiscard]] bool add(const std::string& text) {
+    if (see_) see_(text);
+    if (numbered_) return lines_.add(text);
+    file_.append(text);
+    return true;
+  }
+  void add_block(Range range, const std::string& text) {
+    if (see_) see_(text);
+    file_.append(block_text(range, text));
+  }
+  // Returns false if numbered lines are missing or occur twice.
+  [[nodiscard]] bool commit() {
+    if (const std::string lines = lines_.take(); numbered_) {
+      if (lines.empty()) return false;
+      file_.append(lines);
+    }
+    file_.commit();
+    return true;
+  }
+
+ private:
+  WholeFile file_;
+  bool numbered_;
+  const See& see_;
+  LinesInOrder lines_;
+};
+
+void write_file(const Rows& rows, const RowJournal& journal, const fs::path& path, const RowHooks& hooks,
+                const See& see) {
   const bool in_blocks = rows.plan().shard.count > 1;
-  whole.append(rows.head());
+  TableFile file(path, rows.head(), rows.are_numbered() && !in_blocks, see, advice_while_in_journal(journal));
   for_each_chunk(rows, journal, hooks, [&](Range range, const std::string& text) {
-    whole.append(in_blocks ? block_text(range, text) : text);
-    return see(range, text);
+    if (!in_blocks) return rows.may_be_text_of(range, text) && file.add(text);
+    file.add_block(range, text);
+    return rows.may_be_text_of(range, text);
   });
-  whole.commit();
+  if (!file.commit()) throw std::logic_error("lines of the table are missing in the journal");
 }
 
+// --- Files that are complete ---
+
+// Whether `existing` continues a run, and this file of it is complete: files appear only when they are complete.
 bool is_complete(const fs::path& file, Existing existing) {
   return existing == Existing::kResume && files::is_there(file) && !files::is_there(journal_of(file));
 }
 
-std::uint64_t require_head(const File& file, const Rows& rows) {
-  const std::string head = rows.head();
-  require_same_head(file.path(), read_head(file).value_or(file.read(0, head.size())), head);
-  return head.size();
+[[noreturn]] void refuse_damaged(const fs::path& file, const Rows& rows, std::uint64_t found, std::uint64_t all) {
+  throw InputError({.file = file.string(),
+                    .what = "is damaged: " + std::to_string(found) + " of " +
+                            text::counted(all, rows.plan().kind.row, rows.plan().kind.rows) + " can be read",
+                    .why = "a complete file has all of them",
+                    .suggestion = "compute it again with --force"});
 }
 
-void require_shard_file(const File& file, const Rows& rows, const std::function<void(const std::string& text)>& take) {
+void read_shard(const File& file, const Rows& rows, std::uint64_t head_bytes, const See& see) {
   std::uint64_t found = 0;
-  for (const Block& block : find_blocks(file, require_head(file, rows)).list) {
+  for (const Block& block : find_blocks(file, head_bytes).list) {
     const std::string text = read_lines(file, block);
     if (!rows.may_be_one_block(block.range) || !rows.may_be_text_of(block.range, text)) continue;
     found += block.range.rows;
-    take(text);
+    if (see) see(text);
   }
-  if (found != rows.shard_rows()) refuse_damaged(file.path(), rows, found);
+  if (found != rows.shard_rows()) refuse_damaged(file.path(), rows, found, rows.shard_rows());
 }
 
-void refuse_damaged(const fs::path& file, const Rows& rows, std::uint64_t rows_found) {
-  throw InputError({.file = file.string(),
-                    .what = "is damaged: " + std::to_string(rows_found) + " of " +
-                            text::counted(rows.shard_rows(), rows.plan().kind.row) + " can be read",
-                    .why = "a complete file has all of them",
-                    .suggestion = "compute it again with --force"});
+void read_lines_of(const File& file, const Rows& rows, std::uint64_t offset, const See& see) {
+  constexpr std::size_t kPieceBytes = 1 << 20;
+  std::uint64_t found = 0;
+  char last = '\n';
+  for (std::string text = file.read(offset, kPieceBytes); !text.empty(); text = file.read(offset, kPieceBytes)) {
+    found += static_cast<std::uint64_t>(std::ranges::count(text, '\n'));
+    last = text.back();
+    offset += text.size();
+    if (see) see(text);
+  }
+  if (last != '\n' || found != rows.line_count()) refuse_damaged(file.path(), rows, found, rows.line_count());
+}
+
+void read_complete(const fs::path& path, const Rows& rows, const See& see) {
+  const File file(path, File::Mode::kRead);
+  const std::string head = rows.head();
+  require_same_head(file.path(), read_head(file).value_or(file.read(0, head.size())), head);
+  if (rows.plan().shard.count > 1) {
+    read_shard(file, rows, head.size(), see);
+  } else {
+    read_lines_of(file, rows, head.size(), see);
+  }
+}
+
+}  // namespace
+
+Summary write(const Rows& rows, const fs::path& file, Existing existing, const RowHooks& hooks, Team* team,
+              const See& see) {
+  require_free(file, existing);
+  Summary summary;
+  summary.rows = rows.shard_rows();
+  if (is_complete(file, existing)) {
+    read_complete(file, rows, see);
+    summary.resumed = summary.rows;
+    return summary;
+  }
+  RowJournal journal(file, rows, existing, hooks);
+  Computation(rows, journal, team, hooks).run(summary);
+  write_file(rows, journal, file, hooks, see);
+  journal.remove();
+  return summary;
+}
+
+Summary merge(const std::vector<fs::path>& paths, const fs::path& file, Existing existing, const RowHooks& hooks,
+              const See& see) {
+  files::require_not_read(file, paths);
+  require_free(file, existing == Existing::kReplace ? existing : Existing::kRefuse);
+  const MergedShards shards = read_shards(paths, hooks);
+  TableFile table(file, shards.head, shards.numbered, see);
+  shards.for_each_chunk([&](Range, const std::string& text) { return table.add(text); });
+  if (!table.commit()) {
+    text::refuse(paths.front(), "and the other shards do not hold each line of the table once", "every line is needed",
+                 "compute them again");
+  }
+  Summary summary;
+  summary.rows = shards.rows;
+  return summary;
 }
 
 }  // namespace exactff::jobs

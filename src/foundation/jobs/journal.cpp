@@ -4,8 +4,6 @@
 #include <system_error>
 
 #include "exactff/error.h"
-#include "text/characters.h"
-#include "text/escape.h"
 #include "text/phrases.h"
 
 namespace exactff::jobs {
@@ -18,25 +16,6 @@ fs::path journal_of(const fs::path& file) {
 }
 
 namespace {
-
-// The head of the file with one additional comment line.
-std::string journal_head(const Rows& rows) {
-  const std::string head = rows.head();
-  const std::size_t columns = head.rfind('\n', head.size() - 2) + 1;
-  const RowKind& kind = rows.plan().kind;
-  return head.substr(0, columns) + "# unfinished: " + std::string(kind.rows) +
-         " in the order in which they were done; exactff " + std::string(kind.command) + " with --resume goes on\n" +
-         head.substr(columns);
-}
-
-std::string_view line_at(std::string_view text, std::size_t at) {
-  return text.substr(at, std::min(text.find('\n', at), text.size()) - at);
-}
-
-std::string shorten(std::string_view line) {
-  constexpr std::size_t kMost = 200;
-  return text::printable(text::beginning(line, kMost)) + (line.size() > kMost ? "..." : "");
-}
 
 File open_journal(const fs::path& path, const RowHooks& hooks) {
   File file = files::open_locked(
@@ -71,33 +50,6 @@ void require_free(const fs::path& file, Existing existing) {
   }
 }
 
-namespace {
-
-// Cells of a grid were once named by column and row, "12,7".
-std::string about_old_ids(std::string_view line) {
-  const bool of_grid = line.starts_with("# receivers: ") && line.find(", grid") != std::string_view::npos;
-  return of_grid ? ". If only the hash differs, the file may be of an older version, which named the cell r7c12 of a "
-                   "grid '12,7'; such a file cannot be continued or merged"
-                 : "";
-}
-
-}  // namespace
-
-void require_same_head(const fs::path& file, std::string_view head, std::string_view other, const std::string& whose,
-                       const std::string& suggestion) {
-  const std::string_view common =
-      head.substr(0, static_cast<std::size_t>(
-                         std::mismatch(head.begin(), head.end(), other.begin(), other.end()).first - head.begin()));
-  if (common.size() == head.size() && head.size() == other.size()) return;
-  const std::size_t line = common.rfind('\n') + 1;  // npos + 1 is 0
-  throw InputError({.file = file.string(),
-                    .line = static_cast<std::size_t>(std::count(common.begin(), common.end(), '\n')) + 1,
-                    .what = "belongs to a different request: it says '" + shorten(line_at(head, line)) + "', and " +
-                            whose + " '" + shorten(line_at(other, line)) + "'",
-                    .why = "rows of different requests must not be mixed" + about_old_ids(line_at(head, line)),
-                    .suggestion = suggestion});
-}
-
 RowJournal::RowJournal(const fs::path& file, const Rows& rows, Existing existing, const RowHooks& hooks)
     : file_(open_journal(journal_of(file), hooks)) {
   take_over(rows, existing, hooks);
@@ -109,7 +61,7 @@ RowJournal::~RowJournal() {
 }
 
 void RowJournal::take_over(const Rows& rows, Existing existing, const RowHooks& hooks) {
-  const std::string head = journal_head(rows);
+  const std::string head = rows.head(HeadOf::kJournal);
   const std::optional<std::string> found = read_head(file_);
   // A journal that is cut off within its head holds no rows.
   const bool nothing = !found && head.starts_with(file_.read(0, head.size()));

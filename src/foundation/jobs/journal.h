@@ -14,12 +14,6 @@
 
 namespace exactff::jobs {
 
-// Throws an InputError that names the first line in which the head of `file` differs from the expected head.
-void require_same_head(
-    const std::filesystem::path& file, std::string_view head, std::string_view other,
-    const std::string& whose = "this request says",
-    const std::string& suggestion = "use the same flags as before, name another file, or start again with --force");
-
 class RowJournal {
  public:
   // Opens and locks the journal of `file` for rows under this head. Throws InputError if another process is using the

@@ -17,14 +17,14 @@ struct MergedShards {
   // Returns false if the text cannot be that of these rows: the file changed in the meantime.
   using Take = std::function<bool(Range range, const std::string& text)>;
 
-  std::string head;  // of the shards, without the line that identifies one
+  std::string head;       // of the table
+  bool numbered = false;  // Rows::are_numbered
   std::uint64_t rows = 0;
   std::function<void(const Take& take)> for_each_chunk;  // in order
 };
 
 // Throws one InputError that lists all problems: shards that are missing, duplicate, damaged, unfinished or of another
 // request.
-[[nodiscard]] MergedShards read_shards(const std::vector<std::filesystem::path>& paths, const RowKind& kind,
-                                       const RowHooks& hooks);
+[[nodiscard]] MergedShards read_shards(const std::vector<std::filesystem::path>& paths, const RowHooks& hooks);
 
 }  // namespace exactff::jobs

@@ -13,4 +13,7 @@ namespace exactff::text {
 // UTF-8 stay different.
 [[nodiscard]] std::string in_utf8(std::string_view text);
 
+// Appends the character of this code, which is at most U+10FFFF.
+void append_utf8(std::string& text, char32_t code);
+
 }  // namespace exactff::text

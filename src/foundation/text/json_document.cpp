@@ -44,5 +44,6 @@ std::string with_escaped_controls(const std::string& document) {
 }  // namespace
 
 std::string json_document(const ordered_json& json) { return with_escaped_controls(well_formed(json).dump(2)); }
+std::string json_line(const ordered_json& json) { return with_escaped_controls(well_formed(json).dump()); }
 
 }  // namespace exactff::text

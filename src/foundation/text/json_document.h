@@ -10,5 +10,7 @@ namespace exactff::text {
 // (text/escape.h), since JSON cannot hold them. Control characters stay in the string and are written as \u001b, \u0085
 // or \u202e, so that the document can be printed to a terminal.
 [[nodiscard]] std::string json_document(const nlohmann::ordered_json& json);
+// The same in one line.
+[[nodiscard]] std::string json_line(const nlohmann::ordered_json& json);
 
 }  // namespace exactff::text

@@ -257,7 +257,7 @@ Compared compare_tables(const CheckArguments& args) {
 }
 
 Compared compare(const CheckArguments& args) {
-  const bool are_matrices = matrix::is_csv(args.truth);
+  const bool are_matrices = table::kind_of(args.truth) == "matrix";
   are_matrices ? require_comparable_matrices(args) : require_comparable(args);
   Compared compared = are_matrices        ? compare_matrices(args)
                       : args.are_images() ? compare_images(args)

@@ -228,7 +228,8 @@ void write_files(const MatrixArguments& args, const Scene& scene, const matrix::
   const auto write_text = [](const std::string& file, const auto& text) {
     if (!file.empty()) write_whole_file(file, text());
   };
-  if (!args.keeps_work()) write_text(args.csv, [&] { return csv_text(scene, matrix, options.factors); });
+  if (!args.keeps_work())
+    write_text(args.csv, [&] { return table::csv_text(table_of(scene, matrix, options.factors)); });
   if (!args.npz.empty()) write_npz(scene, matrix, args.npz);
   write_text(args.view3d, [&] { return view3d_text(scene, matrix); });
   write_text(args.energyplus, [&] { return energyplus_text(scene, matrix, args.zone); });

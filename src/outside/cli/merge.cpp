@@ -39,7 +39,7 @@ struct MergeArguments {
 };
 
 // Returns the exit code.
-int warn_of_wide_entries(const matrix::Table& table) {
+int warn_of_wide_entries(const matrix::NamedMatrix& table) {
   std::ptrdiff_t wide = 0;
   for (const auto* entries : {&table.entries, &table.back, &table.open}) {
     wide += std::ranges::count(*entries, false, &ViewFactor::accurate);
@@ -58,12 +58,12 @@ int merge_matrix(const MergeArguments& args, const jobs::RowHooks& hooks, const 
     text::refuse(further.front() + " is given with shards of a matrix", "it writes the values of a truth file",
                  "run exactff matrix with --resume, -o for the merged file and --npz");
   }
-  const jobs::Summary summary = matrix::merge({args.shards.begin(), args.shards.end()}, args.file,
-                                              args.force ? jobs::Existing::kReplace : jobs::Existing::kRefuse, hooks);
+  const jobs::Summary summary = jobs::merge({args.shards.begin(), args.shards.end()}, args.file,
+                                            args.force ? jobs::Existing::kReplace : jobs::Existing::kRefuse, hooks);
   bar.clear();
   std::cout << text::counted(summary.rows, "pair") << "\nMatrix: " << text::printable(args.file) << '\n';
   check_output(std::cout);
-  return warn_of_wide_entries(matrix::read_csv(args.file));
+  return warn_of_wide_entries(matrix::read_named(args.file));
 }
 
 int run(const MergeArguments& args) {
@@ -75,7 +75,7 @@ int run(const MergeArguments& args) {
                              .cancelled = is_interrupted};
   truth::Summary summary;
   try {
-    if (jobs::command_of_shard(args.shards.front()) == "matrix") {
+    if (table::kind_of(args.shards.front()) == "matrix") {
       return merge_matrix(args, hooks, bar);
     }
     summary = truth::merge({args.shards.begin(), args.shards.end()}, args.file,

@@ -75,7 +75,6 @@ constexpr const char* kRadiosityFooter =
     "  exactff radiosity data/scenes/cornell_box.obj --divide 140 --width 1e-3 -o build/cells.csv";
 
 constexpr std::size_t kMostPatchesShown = 40;
-constexpr std::string_view kSceneHash = "scene hash ";  // in the head of a matrix
 
 struct RadiosityArguments {
   flags::SceneArguments scene;
@@ -347,38 +346,16 @@ void print(const RadiosityArguments& args, const Scene& scene, const Solution& s
   } else if (args.json) {
     print_json(args, scene, solution);
   } else if (args.csv) {
-    std::cout << csv_text(scene, solution, args.options.factors, args.origin());
+    std::cout << table::csv_text(table_of(scene, solution, args.options.factors, args.origin()));
   } else {
     print_for_people(scene, solution, balanced);
     print_files(args);
   }
 }
 
-// What the head of the file says of the accuracy and the limit of work.
-ViewFactorOptions options_of(const matrix::Table& table) {
-  ViewFactorOptions options;
-  for (const std::string& line : table.header) {
-    const auto number_after = [&](std::string_view word, double otherwise) {
-      const std::size_t at = line.find(word);
-      if (at == std::string::npos) return otherwise;
-      const std::string rest = line.substr(at + word.size());
-      const text::ParsedNumber number = text::parse_number(rest.substr(0, rest.find_first_of(", ")));
-      return number.fault == text::NumberFault::kNone ? number.value : otherwise;
-    };
-    if (!line.starts_with(kSceneHash)) continue;
-    options.accuracy = number_after("; accuracy ", options.accuracy);
-    options.budget = static_cast<std::size_t>(number_after(", budget ", 1.0));
-    options.certify = line.find(", certify") != std::string::npos;
-  }
-  return options;
-}
-
-void require_matrix_of(const Scene& scene, const matrix::Table& table) {
-  const bool is_of_scene = std::ranges::any_of(table.header, [&](const std::string& line) {
-    return line.starts_with(std::string(kSceneHash) + scene.hash() + ';');
-  });
-  if (is_of_scene) return;
-  text::refuse(std::filesystem::path(table.file), "holds the view factors of another scene",
+void require_matrix_of(const Scene& scene, const matrix::NamedMatrix& matrix) {
+  if (matrix.head.text("scene_hash") == scene.hash()) return;
+  text::refuse(std::filesystem::path(matrix.file), "holds the view factors of another scene",
                "its head has another hash", "give the same scene, with the same --divide, --two-sided and --patches");
 }
 
@@ -405,9 +382,9 @@ std::optional<matrix::Matrix> view_factors_of(const RadiosityArguments& args, co
     return kept_view_factors(args,
                              {.scene = &scene, .from = patches, .to = patches, .options = of_matrix, .shard = {}});
   }
-  const matrix::Table table = matrix::read_csv(args.matrix);
+  const matrix::NamedMatrix table = matrix::read_named(args.matrix);
   require_matrix_of(scene, table);
-  options = options_of(table);
+  options = matrix::options_of(table.head);
   const matrix::Options as_there{.factors = options, .backs = !table.back.empty(), .open = !table.open.empty()};
   return matrix::read({.scene = &scene, .from = patches, .to = patches, .options = as_there, .shard = {}}, args.matrix);
 }
@@ -464,8 +441,8 @@ int exit_code_of(const Solution& solution) {
 
 void require_same_request(const RadiosityArguments& args, const radiosity::SolutionFile& file) {
   ViewFactorOptions options = args.options.factors;
-  if (!args.matrix.empty()) options = options_of(matrix::read_csv(args.matrix));
-  const bool is_same = file.accuracy == options.accuracy && file.budget == options.budget &&
+  if (!args.matrix.empty()) options = matrix::options_of(matrix::read_named(args.matrix).head);
+  const bool is_same = file.options.accuracy == options.accuracy && file.options.budget == options.budget &&
                        file.width == args.options.width &&
                        (!options.certify || matrix::weaker(file.claim, Claim::kCertified) == Claim::kCertified);
   if (is_same) return;
@@ -481,7 +458,7 @@ int finish_again(const RadiosityArguments& args, const Scene& scene) {
     text::refuse(path, "is complete, and --json is given", "the balance is not in the file",
                  "leave out --json, or compute it again with --force");
   }
-  const radiosity::SolutionFile file = radiosity::read_csv(path);
+  const radiosity::SolutionFile file = radiosity::read_solution(path);
   const Solution solution = radiosity::solution_of(scene, file);
   require_same_request(args, file);
   if (!args.vtk.empty()) write_vtk(scene, solution, args.vtk);
@@ -526,7 +503,7 @@ int run(const RadiosityArguments& given) {
     print_warnings(problems_of_width(scene, *matrix, args.options.factors));
   }
   if (!args.output.empty())
-    write_whole_file(args.output, csv_text(scene, solution, args.options.factors, args.origin()));
+    write_whole_file(args.output, table::csv_text(table_of(scene, solution, args.options.factors, args.origin())));
   if (args.keeps_work()) {
     std::filesystem::remove(args.kept_factors());
     std::filesystem::remove(jobs::journal_of(args.kept_again()));

@@ -48,7 +48,7 @@ void SolutionArgument::add_to(CLI::App& app) {
 
 LitScene load(const SceneArguments& scene, const SolutionArgument& solution) {
   if (!solution.is_given()) return {scene.load(), std::nullopt};
-  const radiosity::SolutionFile file = radiosity::read_csv(solution.file);
+  const radiosity::SolutionFile file = radiosity::read_solution(solution.file);
   Scene made = made_as_in(file, scene);
   radiosity::Radiosities radiosities = radiosity::radiosities_of(made, file);
   return {std::move(made), std::move(radiosities)};

@@ -60,7 +60,8 @@ class MadeMatrix {
     const Scene& scene = shared_->scene();
     if (extension == ".npz") return matrix::write_npz(scene, made_, path);
     if (extension == ".vtp" || extension == ".vtu") return write_row(path);
-    if (extension == ".csv") return write_whole_files({{path, csv_text(scene, made_, options_)}});
+    if (extension == ".csv")
+      return write_whole_files({{path, table::csv_text(matrix::table_of(scene, made_, options_))}});
     refuse_overlaps(path);
     write_whole_files({{path, extension == ".idf" ? energyplus_text(scene, made_, zone) : view3d_text(scene, made_)}});
   }

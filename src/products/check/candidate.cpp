@@ -6,7 +6,7 @@
 #include "check/name_list.h"
 #include "exactff/check.h"
 #include "kernel/float_environment.h"
-#include "text/csv_table.h"
+#include "table/csv.h"
 
 namespace exactff::check {
 namespace {
@@ -71,7 +71,7 @@ class CandidateReader {
     row.source = sources_.number_of(candidate_.has_sources ? table_.field(source_) : std::string());
     if (by_ == MatchBy::kPosition) row.point = table_.vector(point_);
     if (candidate_.has_normals) row.normal = table_.vector(normal_);
-    row.value = table_.number(value_, text::NotFinite::kAccept);
+    row.value = table_.number(value_, table::NotFinite::kAccept);
     candidate_.rows.push_back(std::move(row));
   }
 
@@ -82,7 +82,7 @@ class CandidateReader {
     }
   }
 
-  text::CsvTable table_;
+  table::CsvReader table_;
   MatchBy by_;
   Candidate candidate_;
   NameList sources_;

@@ -53,11 +53,10 @@ void require_single_entries(const Truth& truth) {
   problems.throw_if_any();
 }
 
-Truth truth_of(const matrix::Table& table, const Columns& columns) {
+Truth truth_of(const matrix::NamedMatrix& table, const Columns& columns) {
   Truth truth;
   truth.file = table.file;
   truth.column = "factor";
-  truth.header = table.header;
   truth.is_matrix = true;
   truth.faces = {""};
   NameList names;
@@ -67,7 +66,8 @@ Truth truth_of(const matrix::Table& table, const Columns& columns) {
   const std::size_t width = buried + (table.buried.empty() ? 0 : 1);
   for (std::size_t i = 0; i < table.from.size(); ++i) {
     const auto add = [&](const std::string& to, const ViewFactor& f, std::size_t place) {
-      truth.rows.push_back(truth_row(table.from[i], names.number_of(to), f, table.lines[i * width + place]));
+      truth.rows.push_back(
+          truth_row(table.from[i], names.number_of(to), f, static_cast<std::uint32_t>(table.lines[i * width + place])));
     };
     for (std::size_t j = 0; j < patches; ++j) add(table.to[j], table.entries[i * patches + j], j);
     if (columns.back) add(std::string(matrix::kBack), table.back[i], patches);
@@ -96,7 +96,7 @@ CandidateColumns columns_of_list(const fs::path& file, CandidateColumns columns)
   return columns;
 }
 
-void compare_by_names(const matrix::Table& table, const Candidate& candidate, bool partial, Matrices& result) {
+void compare_by_names(const matrix::NamedMatrix& table, const Candidate& candidate, bool partial, Matrices& result) {
   const auto has = [&](std::string_view name) {
     return std::ranges::find(candidate.sources, name) != candidate.sources.end();
   };
@@ -111,7 +111,7 @@ void compare_by_names(const matrix::Table& table, const Candidate& candidate, bo
 
 // --- By their order ---
 
-void require_same_size(const matrix::Table& table, const NumberGrid& grid) {
+void require_same_size(const matrix::NamedMatrix& table, const NumberGrid& grid) {
   if (grid.rows == table.from.size() && grid.columns == table.to.size()) return;
   text::refuse(fs::path(grid.file),
                "is " + grid.kind + " of " + std::to_string(grid.rows) + " x " + std::to_string(grid.columns) +
@@ -121,7 +121,7 @@ void require_same_size(const matrix::Table& table, const NumberGrid& grid) {
 }
 
 // View3D's areas have six digits: they are off by 5e-6 of themselves at most.
-void require_same_areas(const matrix::Table& table, const NumberGrid& grid) {
+void require_same_areas(const matrix::NamedMatrix& table, const NumberGrid& grid) {
   constexpr double kSixDigits = 1e-5;
   text::ProblemList problems;
   for (std::size_t i = 0; i < grid.areas.size(); ++i) {
@@ -136,7 +136,7 @@ void require_same_areas(const matrix::Table& table, const NumberGrid& grid) {
   problems.throw_if_any();
 }
 
-void compare_in_order(const matrix::Table& table, const NumberGrid& grid, Matrices& result) {
+void compare_in_order(const matrix::NamedMatrix& table, const NumberGrid& grid, Matrices& result) {
   require_same_size(table, grid);
   if (!grid.areas.empty()) require_same_areas(table, grid);
   result.candidate_file = grid.file;
@@ -150,7 +150,7 @@ void compare_in_order(const matrix::Table& table, const NumberGrid& grid, Matric
 
 class FactFinder {
  public:
-  FactFinder(const matrix::Table& table, const Matrices& matrices)
+  FactFinder(const matrix::NamedMatrix& table, const Matrices& matrices)
       : table_(table), truth_(matrices.truth), theirs_(truth_.rows.size(), std::numeric_limits<double>::quiet_NaN()) {
     for (const Measured& one : matrices.values) theirs_[one.row] = one.value;
   }
@@ -198,7 +198,7 @@ class FactFinder {
     }
   }
 
-  const matrix::Table& table_;
+  const matrix::NamedMatrix& table_;
   const Truth& truth_;
   std::vector<double> theirs_;  // in the order of the truth; NaN where there is none
   MatrixFacts facts_;
@@ -209,7 +209,7 @@ class FactFinder {
 Matrices read_matrices(const fs::path& truth, const fs::path& candidate, const CandidateColumns& columns,
                        bool partial) {
   const kernel::StandardArithmetic arithmetic;
-  const matrix::Table table = matrix::read_csv(truth);
+  const matrix::NamedMatrix table = matrix::read_named(truth);
   Matrices result;
   switch (kind_of(candidate, columns)) {
     case OtherKind::kList:
@@ -229,16 +229,11 @@ Matrices read_matrices(const fs::path& truth, const fs::path& candidate, const C
       break;
   }
   result.facts = FactFinder(table, result).find();
-  result.facts.old_claims = table.has_old_claims;
   return result;
 }
 
 std::vector<std::string> sentences(const MatrixFacts& facts) {
   std::vector<std::string> texts;
-  if (facts.old_claims) {
-    texts.emplace_back(
-        "the truth is of an older version, whose claims 'topology-proved' and 'statistical' count as estimated");
-  }
   const auto at = [](const MatrixFacts::Largest& entry) { return ", at " + name_of_entry(entry.from, entry.to); };
   if (facts.row_sum) {
     texts.push_back("sums of rows are at most " + text::short_number(facts.row_sum->by) + " off those of the truth" +

@@ -13,7 +13,6 @@ namespace exactff::check {
 
 // What view factors must keep to, whatever the truth is: how far the candidate's entries are from it.
 struct MatrixFacts {
-  bool old_claims = false;  // of the truth
   struct Largest {
     double by = 0.0;
     std::string from, to;

@@ -10,7 +10,7 @@
 #include "check/row_keys.h"
 #include "exactff/check.h"
 #include "kernel/float_environment.h"
-#include "text/csv_table.h"
+#include "table/csv.h"
 
 namespace exactff::check {
 namespace {
@@ -25,7 +25,6 @@ class TruthReader {
   TruthReader(const std::filesystem::path& path, const std::string& column) : table_(path, "a truth file") {
     truth_.file = table_.file();
     truth_.column = column;
-    truth_.header = std::move(table_.comments());
     find_columns();
   }
 
@@ -164,7 +163,7 @@ class TruthReader {
     }
   }
 
-  text::CsvTable table_;
+  table::CsvReader table_;
   Truth truth_;
   NameList sources_, faces_;
   std::size_t receiver_ = 0, value_ = 0, source_ = 0, on_ = 0, status_ = 0, rho_b_ = 0, exact_ = 0;

@@ -4,38 +4,18 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "files/parallel.h"
 #include "kernel/float_environment.h"
+#include "matrix/columns.h"
 #include "text/phrases.h"
 #include "view_factors/pairs.h"
 
 namespace exactff::matrix {
 namespace {
-
-// One line for each entry. Doubles read back to the same bits.
-void append(std::string& text, const ViewFactor& f) {
-  for (const double number : {f.value, f.lower, f.upper, f.area_from, f.area_to}) text += text::shortest(number) + ' ';
-  for (const std::size_t number :
-       {static_cast<std::size_t>(f.claim), static_cast<std::size_t>(f.way), static_cast<std::size_t>(f.limit),
-        static_cast<std::size_t>(f.accurate ? 1 : 0), f.cells, f.event_cells}) {
-    text += std::to_string(number) + ' ';
-  }
-  text += '\n';
-}
-
-bool read(std::istream& in, ViewFactor& f) {
-  unsigned claim = 0, way = 0, limit = 0;
-  in >> f.value >> f.lower >> f.upper >> f.area_from >> f.area_to >> claim >> way >> limit >> f.accurate >> f.cells >>
-      f.event_cells;
-  f.claim = static_cast<Claim>(claim);
-  f.way = static_cast<Way>(way);
-  f.limit = static_cast<Limit>(limit);
-  return !in.fail() && !to_string(f.claim).empty() && !to_string(f.way).empty() && !to_string(f.limit).empty();
-}
 
 // The patches of these entries, each once, and the entries among them.
 struct Part {
@@ -70,6 +50,19 @@ std::string name_of(const Scene& scene, const ViewFactorOptions& options, std::s
          (options.sample_crowds ? "" : ":cells") + ':' + std::to_string(entry);
 }
 
+// One line for each entry. Returns false, and takes nothing, if the text has other lines.
+template <class Put>
+bool take_kept(std::string_view text, const std::vector<std::size_t>& entries, const Put& put) {
+  std::vector<Entry> lines(entries.size());
+  for (Entry& line : lines) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos || !columns().read_csv(text.substr(0, end), line)) return false;
+    text.remove_prefix(end + 1);
+  }
+  for (std::size_t k = 0; k < entries.size(); ++k) put(entries[k], lines[k].factor);
+  return text.empty();
+}
+
 // A pair counts for all of its entries.
 Hooks shifted(const AgainHooks& with, std::size_t entries) {
   const auto show = [&with, entries](const Progress& progress) {
@@ -85,14 +78,14 @@ void compute_again(const Scene& scene, const Again& again, const AgainHooks& wit
                    const std::function<void(std::size_t)>& take) {
   if (again.entries.empty()) return;
   const kernel::StandardArithmetic arithmetic;
-  const std::size_t columns = factors.to.size();
+  const std::size_t width = factors.to.size();
   const Part part(again, factors);
   const view_factors::Pairs pairs(scene, part.patches, part.patches, again.factors);
   std::set<std::size_t> unique;
-  for (const std::size_t entry : again.entries) unique.insert(pairs.pair_of(part.entry_in_part(entry, columns)));
+  for (const std::size_t entry : again.entries) unique.insert(pairs.pair_of(part.entry_in_part(entry, width)));
   const std::vector<std::size_t> wanted(unique.begin(), unique.end());
   const auto put = [&](std::size_t entry, const ViewFactor& f) {
-    const std::size_t place = part.entry_in_all(entry, columns);
+    const std::size_t place = part.entry_in_all(entry, width);
     factors.entries[place] = f;
     take(place);
   };
@@ -100,20 +93,15 @@ void compute_again(const Scene& scene, const Again& again, const AgainHooks& wit
   files::parallel_for(
       wanted.size(), threads, "view factors again", shifted(with, again.entries.size()), [&](std::size_t i) {
         const std::vector<std::size_t>& entries = pairs.entries_of(wanted[i]);
-        const std::string name = name_of(scene, again.factors, part.entry_in_all(entries.front(), columns));
+        const std::string name = name_of(scene, again.factors, part.entry_in_all(entries.front(), width));
         const auto kept = with.journal != nullptr ? with.journal->find(name) : std::nullopt;
-        if (kept) {
-          std::istringstream in(*kept);
-          std::vector<ViewFactor> known(entries.size());
-          if (std::ranges::all_of(known, [&](ViewFactor& f) { return read(in, f); })) {
-            for (std::size_t k = 0; k < entries.size(); ++k) put(entries[k], known[k]);
-            return;
-          }
-        }
+        if (kept && take_kept(*kept, entries, put)) return;
         std::string text;
+        Entry line;
         pairs.compute(wanted[i], [&](std::size_t entry, const ViewFactor& f) {
           put(entry, f);
-          append(text, f);
+          line.factor = f;
+          columns().append_csv(line, text);
         });
         if (with.journal != nullptr) with.journal->add(name, text);
       });

@@ -4,7 +4,6 @@
 #include <chrono>
 
 #include "kernel/float_environment.h"
-#include "matrix/csv.h"
 #include "text/text_lines.h"
 
 namespace exactff::matrix {
@@ -126,11 +125,11 @@ std::string EntryJobs::name(std::size_t job) const {
          text::in_quotes(name_of_column(entry % width_));
 }
 
-void EntryJobs::append_csv(std::string& text, std::size_t entry, const ViewFactor& f) const {
-  const std::size_t column = entry % width_;
-  const bool has_area = kind_of(column) == Column::kOfPatch || kind_of(column) == Column::kOfBacks;
-  add_csv_row(text, scene_.name_of(from_[entry / width_]), name_of_column(column), f,
-              has_area ? std::optional(f.area_to) : std::nullopt);
+void EntryJobs::describe(std::size_t number, Entry& entry) const {
+  const std::size_t column = number % width_;
+  entry.from = scene_.name_of(from_[number / width_]);
+  entry.to = name_of_column(column);
+  entry.has_area_to = kind_of(column) == Column::kOfPatch || kind_of(column) == Column::kOfBacks;
 }
 
 }  // namespace exactff::matrix

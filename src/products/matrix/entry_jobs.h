@@ -10,6 +10,7 @@
 
 #include "exactff/matrix.h"
 #include "matrix/back_factors.h"
+#include "matrix/columns.h"
 #include "matrix/open_factors.h"
 #include "view_factors/pairs.h"
 
@@ -31,8 +32,8 @@ class EntryJobs {
   [[nodiscard]] std::string name(std::size_t job) const;
   // The name of the job that this thread is computing, if it has taken so long so far; otherwise nothing.
   [[nodiscard]] static std::string slow_of_thread(double seconds);
-  // Appends the entry as a row of the CSV file.
-  void append_csv(std::string& text, std::size_t entry, const ViewFactor& factor) const;
+  // Sets all but the factor.
+  void describe(std::size_t number, Entry& entry) const;
 
  private:
   enum class Column { kOfPatch, kOfBacks, kOfSky, kOfBuried };

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "exactff/matrix.h"
-#include "matrix/csv.h"
+#include "matrix/columns.h"
 
 namespace exactff::matrix {
 

@@ -1,17 +1,23 @@
 #include "matrix/rows.h"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
+#include <utility>
 
+#include "files/apart.h"
 #include "files/parallel.h"
-#include "matrix/csv.h"
+#include "jobs/compute.h"
+#include "jobs/leader.h"
+#include "kernel/float_environment.h"
+#include "matrix/columns.h"
+#include "matrix/team.h"
+#include "text/escape.h"
 #include "text/refuse.h"
 
 namespace exactff::matrix {
 namespace {
 
-constexpr std::string_view kNumber = "entry,";  // the first column of a journal
+namespace fs = std::filesystem;
 
 // Jobs take from microseconds to minutes. Small chunks share them out evenly; as many as this cost little.
 constexpr std::uint64_t kChunks = 4096;
@@ -27,36 +33,21 @@ Request require_valid(Request request) {
   return request;
 }
 
-struct NumberedLine {
-  std::uint64_t entry = 0;
-  std::string_view line;  // with its end
-};
-
-// Takes the first line off the text. Nothing if it has no number or no end.
-std::optional<NumberedLine> take_line(std::string_view& text) {
-  NumberedLine result;
-  const std::size_t end = text.find('\n');
-  if (end == std::string_view::npos) return std::nullopt;
-  const auto number = std::from_chars(text.data(), text.data() + end, result.entry);
-  if (number.ec != std::errc{} || *number.ptr != ',') return std::nullopt;
-  const auto start = static_cast<std::size_t>(number.ptr - text.data()) + 1;
-  result.line = text.substr(start, end + 1 - start);
-  text.remove_prefix(end + 1);
-  return result;
-}
-
 class EntryComputer : public jobs::Rows::Computer {
  public:
   explicit EntryComputer(const EntryJobs& entries) : entries_(entries) {}
   void append(std::uint64_t row, std::string& text) override {
-    entries_.compute(row, [&](std::size_t entry, const ViewFactor& f) {
-      text += std::to_string(entry) + ',';
-      entries_.append_csv(text, entry, f);
+    entries_.compute(row, [&](std::size_t number, const ViewFactor& f) {
+      text += std::to_string(number) + ',';
+      entries_.describe(number, entry_);
+      entry_.factor = f;
+      columns().append_csv(entry_, text);
     });
   }
 
  private:
   const EntryJobs& entries_;
+  Entry entry_;
 };
 
 }  // namespace
@@ -67,58 +58,63 @@ Rows::Rows(Request request)
   const std::uint64_t count = entries_.count();
   const auto chunk = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(count / kChunks, 1, kLargestChunk));
   const int threads = request_.options.threads > 0 ? request_.options.threads : files::usable_threads();
-  plan_ = {kKind, count, chunk, request_.shard, threads};
+  plan_ = {{.command = "matrix", .row = "pair", .rows = "pairs"}, count, chunk, request_.shard, threads};
+  numbered_ = true;
+  about_ = head_of(*request_.scene, request_.from, request_.to, request_.options.factors,
+                   {request_.options.backs, request_.options.open, entries_.has_buried()});
+  columns_ = columns().columns();
 }
 
-std::string Rows::comments() const {
-  return csv_comments(*request_.scene, request_.from, request_.to, request_.options.factors,
-                      {request_.options.backs, request_.options.open, entries_.has_buried()});
-}
-
-std::string Rows::csv_head() const { return comments() + std::string(kColumns) + '\n'; }
-
-std::string Rows::head() const {
-  return comments() + rows_line(plan_) + shard_line(plan_) + std::string(kNumber) + std::string(kColumns) + '\n';
-}
-
-bool Rows::may_be_text_of(jobs::Range range, std::string_view text) const {
-  for (std::uint64_t row = range.first; row < range.end(); ++row) {
-    for (const std::size_t entry : entries_.entries_of(row)) {
-      const std::optional<NumberedLine> line = take_line(text);
-      if (!line || line->entry != entry) return false;
-    }
-  }
-  return text.empty();
+std::vector<std::uint64_t> Rows::lines_of(std::uint64_t row) const {
+  const std::vector<std::size_t> entries = entries_.entries_of(row);
+  return {entries.begin(), entries.end()};
 }
 
 std::unique_ptr<Rows::Computer> Rows::computer() const { return std::make_unique<EntryComputer>(entries_); }
 
-bool EntryLines::add(std::string_view text) {
-  while (!text.empty()) {
-    const std::optional<NumberedLine> line = take_line(text);
-    if (!line) return false;
-    lines_.emplace_back(line->entry, line->line);
-  }
-  return true;
+// --- Files ---
+
+jobs::Summary write(const Request& request, const fs::path& file, jobs::Existing existing, const jobs::RowHooks& hooks,
+                    jobs::Team* team) {
+  const kernel::StandardArithmetic arithmetic;
+  const Rows rows(request);
+  files::require_not_read(file, request.scene->files());
+  return jobs::write(rows, file, existing, hooks, team);
 }
 
-std::string EntryLines::in_order() {
-  std::ranges::sort(lines_);
-  std::string text;
-  for (std::size_t i = 0; i < lines_.size(); ++i) {
-    if (lines_[i].first != i) return {};
-    text += lines_[i].second;
-  }
-  return text;
+jobs::Summary write(const Request& request, const fs::path& file, jobs::Existing existing,
+                    const jobs::RowHooks& hooks) {
+  return write(request, file, existing, hooks, nullptr);
 }
 
-std::string head_without_jobs(const std::string& head) {
-  const std::string pairs = "\n# " + std::string(kKind.rows) + ": ";
-  const std::size_t from = head.find(pairs);
-  const std::size_t to = from == std::string::npos ? from : head.find('\n', from + 1);
-  const std::string columns = std::string(kNumber) + std::string(kColumns) + '\n';
-  if (to == std::string::npos || head.substr(to + 1) != columns) return {};
-  return head.substr(0, from + 1) + std::string(kColumns) + '\n';
+int follow(jobs::Team& team, const std::function<Request()>& request, const jobs::RowHooks& hooks) {
+  return jobs::follow(
+      team, [&] { return std::make_unique<Rows>(request()); }, hooks);
+}
+
+namespace {
+
+bool are_names(const Scene& scene, const std::vector<Selection>& patches, const std::vector<std::string>& read) {
+  return std::ranges::equal(patches, read, [&](const Selection& patch, const std::string& name) {
+    return text::csv_field(scene.name_of(patch)) == text::csv_field(name);
+  });
+}
+
+}  // namespace
+
+Matrix read(const Request& request, const fs::path& file) {
+  NamedMatrix named = read_named(file);
+  const bool same = are_names(*request.scene, request.from, named.from) &&
+                    are_names(*request.scene, request.to, named.to) && named.back.empty() != request.options.backs &&
+                    named.open.empty() != request.options.open;
+  if (!same) {
+    text::refuse(file, "holds other rows or columns than those that are asked for",
+                 "its entries would be taken for others", "compute the matrix again, or name another file");
+  }
+  return {{request.from, request.to, std::move(named.entries)},
+          std::move(named.back),
+          std::move(named.open),
+          std::move(named.buried)};
 }
 
 }  // namespace exactff::matrix

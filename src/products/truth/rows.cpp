@@ -2,24 +2,18 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
-#include <sstream>
+#include <limits>
 #include <string_view>
 
-#include "exactff/version.h"
 #include "files/parallel.h"
 #include "kernel/exact_vec.h"
 #include "scene/misuse.h"
-#include "text/csv_row.h"
-#include "text/escape.h"
 #include "text/fnv1a.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
 namespace exactff::truth {
 namespace {
-
-constexpr std::array kStatuses = {Status::kCertified, Status::kZero, Status::kUnderflow, Status::kNotCertified};
 
 // A hash of everything that the rows state about the receivers: a file of the same name may have changed.
 std::string hash_of(const std::vector<Receiver>& receivers) {
@@ -35,7 +29,7 @@ std::string hash_of(const std::vector<Receiver>& receivers) {
   return hash.digits();
 }
 
-void complete(Request& request) {
+Request completed(Request request) {
   require_scene(request.scene);
   if (request.receivers.empty()) {
     text::refuse("there are no receivers in " + request.receivers_name, "a truth file has a row for each receiver",
@@ -63,15 +57,19 @@ void complete(Request& request) {
   }
   jobs::require_shard(request.shard);
   if (request.threads <= 0) request.threads = files::usable_threads();
+  return request;
 }
 
 }  // namespace
 
-Rows::Rows(Request request) : request_(std::move(request)) {
-  complete(request_);
+Rows::Rows(Request request) : request_(completed(std::move(request))), columns_of_request_(columns_of(request_)) {
   sources_ = std::make_unique<whole_view::SourceFactors>(
       *request_.scene, request_.sources, request_.sky ? whole_view::Sky::kLastSource : whole_view::Sky::kLeftOut);
-  plan_ = {kKind, request_.receivers.size() * sources_->count(), kChunkRows, request_.shard, request_.threads};
+  plan_ = {{.command = "truth"},
+           request_.receivers.size() * sources_->count(),
+           kChunkRows,
+           request_.shard,
+           request_.threads};
   for (std::size_t s = 0; s < sources_->count(); ++s) {
     source_names_.push_back(sources_->name_of(s));
     radiosities_.push_back(sources_->radiosity(s));
@@ -82,70 +80,36 @@ Rows::Rows(Request request) : request_(std::move(request)) {
     light_.emplace(*sources_,
                    whole_view::light_weights(*request_.scene, *sources_, *request_.total, request_.scene_name));
   }
-  receivers_hash_ = hash_of(request_.receivers);
-  near_misses_ = sentences(near_misses(*request_.scene, request_.receivers), request_.receivers.size());
+  columns_ = columns_of_request_.columns();
+  describe(sentences(near_misses(*request_.scene, request_.receivers), request_.receivers.size()));
 }
 
-namespace {
-
-std::string names_line(const Scene& scene, const std::string& key, const std::vector<Selection>& selections) {
-  std::string line;
-  for (const Selection& one : selections)
-    line += (line.empty() ? "# " + key + ": " : " + ") + text::csv_comment(scene.name_of(one));
-  return line.empty() ? line : line + '\n';
-}
-
-std::string changes_of(const Scene& scene) {
-  return names_line(scene, "flipped", scene.flipped()) + names_line(scene, "transparent", scene.transparent());
-}
-
-}  // namespace
-
-std::string Rows::head() const {
+void Rows::describe(const std::vector<std::string>& near_misses) {
   const Scene& scene = *request_.scene;
-  std::ostringstream out;
-  out << "# exactff " << kVersion << " truth: form factors, correctly rounded, between proved bounds\n"
-      << "# scene: " << text::csv_comment(request_.scene_name) << ", hash " << scene.hash() << '\n'
-      << changes_of(scene) << "# receivers: " << text::csv_comment(request_.receivers_name) << ", hash "
-      << receivers_hash_ << '\n'
-      << "# sources: ";
-  for (std::size_t s = 0; s < source_names_.size(); ++s)
-    out << (s > 0 ? " + " : "") << text::csv_comment(source_names_[s]);
-  out << '\n'
-      << rows_line(plan_)
-      << "# units: form factors are pure numbers, radiosity is in the unit of Ke, lengths are in the unit of the "
-         "scene\n"
-      << "# normals: nx,ny,nz are exact and of any length; --unit-normals adds unit vectors\n"
-      << shard_line(plan_);
-  for (const std::string& sentence : near_misses_) out << "# warning: " << text::csv_comment(sentence) << '\n';
-  if (request_.unit_normals) {
-    out << "# unit normals: ux,uy,uz is nx,ny,nz scaled to length 1, correctly rounded; the values belong to "
-           "nx,ny,nz\n";
-  }
-  if (request_.gradient) {
-    out << "# gradient: dF_dx,dF_dy,dF_dz are the derivatives of the form factor by the receiver's point, correctly "
-           "rounded, per unit of length; empty at a kink, where they do not exist\n";
-  }
+  const auto set_names = [&](const char* key, const std::vector<Selection>& selections) {
+    std::vector<std::string> names;
+    for (const Selection& one : selections) names.push_back(scene.name_of(one));
+    if (!names.empty()) about_.set(key, std::move(names));
+  };
+  about_.set("scene", request_.scene_name);
+  about_.set("scene_hash", scene.hash());
+  set_names("flipped", scene.flipped());
+  set_names("transparent", scene.transparent());
+  about_.set("receivers", request_.receivers_name);
+  about_.set("receivers_hash", hash_of(request_.receivers));
+  about_.set("sources", source_names_);
+  if (!near_misses.empty()) about_.set("warnings", near_misses);
   if (request_.total) {
-    out << "# total: " << to_string(*request_.total) << ", in " << unit_of(*request_.total, request_.ke)
-        << (gather_ ? ", of all patches together, with their radiosities" : ", of all sources together")
-        << ", correctly rounded; Ke is a " << (request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity") << '\n';
+    about_.set("total", std::string(to_string(*request_.total)));
+    about_.set("total_of", std::string(gather_ ? "all patches, with their radiosities" : "all sources"));
+    about_.set("ke", std::string(request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity"));
   }
-  if (gather_) {
-    out << "# radiosities: " << text::csv_comment(request_.radiosities->name) << ", hash "
-        << radiosity::hash_of(*request_.radiosities)
-        << "; total_lower and total_upper bound the sum over patches of form factor and radiosity, one number for each "
-           "patch; not the light that varies over patches; "
-        << radiosity::words_of_claim(*request_.radiosities) << '\n';
-  }
-  out << "receiver,on,x,y,z,nx,ny,nz" << (request_.unit_normals ? ",ux,uy,uz" : "") << (request_.uv ? ",u,v" : "")
-      << ",source,exact,lower,upper" << (request_.unoccluded ? ",unoccluded" : "")
-      << (request_.visible_fraction ? ",visible_fraction" : "")
-      << (request_.gradient ? ",dF_dx,dF_dy,dF_dz,gradient_status" : "")
-      << ",radiosity_r,radiosity_g,radiosity_b,largest_rho_b" << (request_.total ? ",total_r,total_g,total_b" : "")
-      << (gather_ ? ",total_lower_r,total_lower_g,total_lower_b,total_upper_r,total_upper_g,total_upper_b" : "")
-      << ",status\n";
-  return std::move(out).str();
+  if (!gather_) return;
+  about_.set("radiosities", request_.radiosities->name);
+  about_.set("radiosities_hash", radiosity::hash_of(*request_.radiosities));
+  // total_lower and total_upper bound the sum over patches of form factor and radiosity, one number for each patch; not
+  // the light that varies over patches.
+  about_.set("radiosities_claim", radiosity::words_of_claim(*request_.radiosities));
 }
 
 namespace {
@@ -175,83 +139,60 @@ whole_view::FaceSide side_of(const Scene& scene, const Receiver& receiver) {
 
 }  // namespace
 
-namespace {
-
-// The worst status of the three.
-std::string_view status_of(const Gradient& gradient) {
-  if (gradient.kink) return "kink";
-  DerivativeStatus worst = DerivativeStatus::kZero;
-  for (const DerivativeStatus status :
-       {DerivativeStatus::kCertified, DerivativeStatus::kUnderflow, DerivativeStatus::kEnclosed}) {
-    if (std::ranges::any_of(gradient.position, [&](const Derivative& d) { return d.status == status; })) worst = status;
-  }
-  return to_string(worst);
-}
-
-void append_gradient(const Gradient& gradient, text::CsvRow& line) {
-  for (const Derivative& d : gradient.position) {
-    if (gradient.kink) {
-      line << std::string_view();
-    } else if (d.value == 0.0 && d.status != DerivativeStatus::kZero) {
-      line << "0.0";
-    } else {
-      line << d.value;
-    }
-  }
-  line << status_of(gradient);
-}
-
-}  // namespace
-
-void Rows::append(std::uint64_t row, std::string& lines, Results& results) const {
-  const std::size_t number = row / sources_->count(), source = row % sources_->count();
+void Rows::compute(std::uint64_t number_of_row, Results& results) const {
+  const std::size_t number = number_of_row / sources_->count(), source = number_of_row % sources_->count();
   const Receiver& receiver = request_.receivers[number];
   const FormFactor& f = factor(number, source, results);
-  Status status = f.status;  // a row is only as good as its worst value
-  const auto keep_worst = [&](bool certified) { status = certified ? status : Status::kNotCertified; };
-  text::CsvRow line(lines);
-  line << id(number) << request_.scene->name_of(receiver.on) << receiver.point << receiver.normal;
-  if (request_.unit_normals) line << results.unit_normal.of(receiver.normal);
+  Row& row = results.row;
+  row.receiver = id(number);
+  row.on = request_.scene->name_of(receiver.on);
+  row.point = receiver.point;
+  row.normal = receiver.normal;
+  if (request_.unit_normals) row.unit_normal = results.unit_normal.of(receiver.normal);
   if (request_.uv) {
-    line << place_along(receiver.cell->column, size_of(receiver).u)
-         << place_along(receiver.cell->row, size_of(receiver).v);
+    row.u = place_along(receiver.cell->column, size_of(receiver).u);
+    row.v = place_along(receiver.cell->row, size_of(receiver).v);
   }
-  line << source_names_[source] << f.value << f.lower << f.upper;
+  row.source = source_names_[source];
+  row.exact = f.value;
+  row.lower = f.lower;
+  row.upper = f.upper;
+  row.status = f.status;  // a row is only as good as its worst value
+  const auto keep_worst = [&](bool certified) { row.status = certified ? row.status : Status::kNotCertified; };
   if (request_.unoccluded) {
     const FormFactor& free = without_occluders(receiver, source, f, results);
-    if (free.status == Status::kUnderflow) {
-      line << "0.0";
-    } else {
-      line << free.value;
-    }
+    row.unoccluded = free.value;
+    row.unoccluded_status = free.status;
     keep_worst(free.status != Status::kNotCertified);
   }
-  if (request_.visible_fraction) line << f.visible_fraction.value_or(0.0);
-  if (request_.gradient) append_gradient(*f.gradient, line);
+  if (request_.visible_fraction) row.visible_fraction = f.visible_fraction.value_or(0.0);
+  if (request_.gradient) {
+    row.kink = f.gradient->kink.has_value();
+    const auto& [x, y, z] = f.gradient->position;
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    row.gradient = row.kink ? Vec3{kNone, kNone, kNone} : Vec3{x.value, y.value, z.value};
+    row.gradient_status = {x.status, y.status, z.status};
+  }
   const Rgb rho = request_.scene->receiver_reflectance(receiver.on), b = radiosities_[source];
-  line << rho.r * b.r * f.value << rho.g * b.g * f.value << rho.b * b.b * f.value
-       << std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b});
-  if (has_totals()) {
-    for (const whole_view::CertifiedNumber& total : results.totals) {
-      line << total.value;
-      keep_worst(total.certified);
-    }
-  }
-  if (gather_) {
-    for (const whole_view::CertifiedNumber& total : results.totals) line << total.lower;
-    for (const whole_view::CertifiedNumber& total : results.totals) line << total.upper;
-  }
-  line << to_string(status);
+  row.radiosity = {rho.r * b.r * f.value, rho.g * b.g * f.value, rho.b * b.b * f.value};
+  row.largest_rho_b = std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b});
+  if (!has_totals()) return;
+  const auto& [red, green, blue] = results.totals;
+  row.total = {red.value, green.value, blue.value};
+  row.total_lower = {red.lower, green.lower, blue.lower};
+  row.total_upper = {red.upper, green.upper, blue.upper};
+  keep_worst(red.certified && green.certified && blue.certified);
 }
-
-bool Rows::may_be_text_of(jobs::Range range, std::string_view text) const { return Tally().add_rows(text, range.rows); }
 
 namespace {
 
 class RowComputer : public Rows::Computer {
  public:
   explicit RowComputer(const Rows& rows) : rows_(rows) {}
-  void append(std::uint64_t row, std::string& text) override { rows_.append(row, text, results_); }
+  void append(std::uint64_t row, std::string& text) override {
+    rows_.compute(row, results_);
+    rows_.columns().append_csv(results_.row, text);
+  }
 
  private:
   const Rows& rows_;
@@ -319,35 +260,16 @@ std::string Rows::name(std::uint64_t row) const {
 }
 
 void Tally::add(std::string_view text) {
-  constexpr std::size_t kLongestKept = 64;  // every status is shorter
-  std::size_t field = 0;                    // start of the last field
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '"') quoted_ = !quoted_;
-    if (quoted_ || (c != ',' && c != '\n')) continue;
-    if (c == '\n') end_row(field_.append(text.substr(field, i - field)));
-    field_.clear();
-    field = i + 1;
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    const std::string_view line = open_.empty() ? text.substr(0, end) : std::string_view(open_.append(text, 0, end));
+    const std::string_view status = line.substr(line.rfind(',') + 1);
+    for (const Status one : {Status::kCertified, Status::kZero, Status::kUnderflow, Status::kNotCertified}) {
+      if (status == to_string(one)) ++by_status_[static_cast<std::size_t>(one)];
+    }
+    open_.clear();
+    text.remove_prefix(end + 1);
   }
-  if (!text.empty()) row_open_ = quoted_ || text.back() != '\n';
-  if (field_.size() < kLongestKept) field_ += text.substr(field, kLongestKept);
+  open_ += text;
 }
-
-void Tally::end_row(std::string_view status) {
-  const auto found = std::find_if(kStatuses.begin(), kStatuses.end(), [&](Status s) { return to_string(s) == status; });
-  if (found == kStatuses.end()) {
-    sound_ = false;
-  } else {
-    ++by_status_[static_cast<std::size_t>(*found)];
-  }
-}
-
-bool Tally::add_rows(std::string_view text, std::uint64_t expected) {
-  const std::uint64_t before = rows();
-  add(text);
-  return whole() && rows() - before == expected;
-}
-
-std::uint64_t Tally::rows() const { return std::accumulate(by_status_.begin(), by_status_.end(), std::uint64_t{0}); }
 
 }  // namespace exactff::truth

@@ -1,4 +1,4 @@
-// The rows of a truth file, and the head above them.
+// The rows of a truth file, and what they depend on.
 #pragma once
 
 #include <array>
@@ -12,13 +12,12 @@
 #include "exactff/truth.h"
 #include "jobs/rows.h"
 #include "radiosity/gather.h"
+#include "truth/columns.h"
 #include "truth/unit_normal.h"
 #include "whole_view/light.h"
 #include "whole_view/source_factors.h"
 
 namespace exactff::truth {
-
-inline constexpr jobs::RowKind kKind = {"truth", "a truth file", "row", "rows"};
 
 // A checked request, with everything precomputed that depends on its sources alone. Threads may share it.
 class Rows : public jobs::Rows {
@@ -27,9 +26,7 @@ class Rows : public jobs::Rows {
   explicit Rows(Request request);
 
   [[nodiscard]] const Request& request() const { return request_; }
-  [[nodiscard]] std::string head() const override;
   [[nodiscard]] std::string name(std::uint64_t row) const override;
-  [[nodiscard]] bool may_be_text_of(jobs::Range range, std::string_view text) const override;
   [[nodiscard]] std::unique_ptr<Computer> computer() const override;
 
   // Objects that a thread reuses from row to row, only to avoid reallocation.
@@ -40,11 +37,14 @@ class Rows : public jobs::Rows {
     whole_view::Light::Results gathered;  // of all patches, for given radiosities
     whole_view::Channels totals;
     std::optional<std::size_t> known;  // this receiver
+    Row row;
   };
-  // Computes a row and appends its line.
-  void append(std::uint64_t row, std::string& lines, Results& results) const;
+  // Computes a row, results.row.
+  void compute(std::uint64_t row, Results& results) const;
+  [[nodiscard]] const Columns& columns() const { return columns_of_request_; }
 
  private:
+  void describe(const std::vector<std::string>& near_misses);
   [[nodiscard]] std::string id(std::size_t receiver) const;
   [[nodiscard]] const FormFactor& factor(std::size_t receiver, std::size_t source, Results& results) const;
   [[nodiscard]] bool has_totals() const { return light_ || gather_; }
@@ -59,8 +59,7 @@ class Rows : public jobs::Rows {
   std::vector<Rgb> radiosities_;                     // indexed by source
   std::optional<whole_view::Light> light_;           // for the totals
   std::unique_ptr<const radiosity::Gather> gather_;  // for those of given radiosities
-  std::string receivers_hash_;
-  std::vector<std::string> near_misses_;  // in sentences
+  Columns columns_of_request_;
 };
 
 // Counts rows by their status, which is the last field of each row.
@@ -68,22 +67,11 @@ class Tally {
  public:
   // Adds text that may begin and end anywhere, even within a row.
   void add(std::string_view text);
-  // The same for whole rows. Returns false unless there are exactly `expected` of them.
-  bool add_rows(std::string_view text, std::uint64_t expected);
-
-  [[nodiscard]] std::uint64_t rows() const;
-  // Whether the text so far consists of whole rows of a truth file only.
-  [[nodiscard]] bool whole() const { return sound_ && !row_open_; }
   [[nodiscard]] const std::array<std::uint64_t, 4>& by_status() const { return by_status_; }
 
  private:
-  void end_row(std::string_view status);
-
   std::array<std::uint64_t, 4> by_status_{};
-  std::string field_;  // the beginning of the last field, from earlier text
-  bool quoted_ = false;
-  bool row_open_ = false;
-  bool sound_ = true;
+  std::string open_;  // the beginning of a row, from earlier text
 };
 
 }  // namespace exactff::truth

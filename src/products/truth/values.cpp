@@ -1,116 +1,222 @@
 // The values of a finished truth file in other formats. They are read from the file itself, so they are the same
 // whether its rows were computed at once, resumed, merged, or computed by several processes.
 #include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
 #include <utility>
 
 #include "exactff/exr.h"
 #include "exactff/truth.h"
 #include "files/file.h"
 #include "files/npy_file.h"
+#include "files/npz_file.h"
 #include "files/parallel.h"
 #include "jobs/journal.h"
 #include "kernel/float_environment.h"
+#include "kernel/vec.h"
+#include "table/csv.h"
 #include "text/refuse.h"
-#include "truth/value_reader.h"
+#include "truth/columns.h"
+#include "truth/unit_normal.h"
 #include "vtk/vtk.h"
 
 namespace exactff::truth {
+namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kRowsBetweenChecks = 256;  // whether the user has cancelled
+
+table::RowReader<Row> reader_of(const fs::path& file) {
+  return {file, all_columns(), "name a file that exactff truth or merge has written"};
+}
+
+// What a truth file holds: every receiver with all sources, in their order.
+class Reading {
+ public:
+  // Throws InputError unless it is a whole truth file; and Cancelled.
+  Reading(const fs::path& file, const jobs::RowHooks& hooks) : file_(file), hooks_(hooks), reader_(reader_of(file)) {
+    sources_ = reader_.head().head.list("sources");
+    const jobs::RowHooks silent{.cancelled = hooks.cancelled};  // the number of rows is not known yet
+    jobs::Pace pace("reading rows", 0, silent);
+    table::RowReader<Row> counter = reader_of(file);
+    for (Row row; counter.next(row); ++rows_) {
+      if (sources_.empty() || row.source != sources_[rows_ % sources_.size()] || !kernel::is_finite(row.normal) ||
+          row.normal == Vec3{}) {
+        counter.damaged();
+      }
+      if (rows_ % kRowsBetweenChecks == 0) pace.add(0);
+    }
+    if (rows_ == 0 || rows_ % sources_.size() != 0) counter.damaged();
+  }
+
+  [[nodiscard]] const std::vector<std::string>& sources() const { return sources_; }
+  [[nodiscard]] std::size_t rows() const { return rows_; }
+  [[nodiscard]] std::size_t receivers() const { return rows_ / sources_.size(); }
+  [[nodiscard]] bool has(std::string_view column) const { return reader_.has(column); }
+  // The head, as text.
+  [[nodiscard]] std::vector<std::string> about() const {
+    const table::ParsedHead& head = reader_.head();
+    return {table::head_line(head.kind, head.head, head.columns)};
+  }
+
+  // Calls take(receiver, source, row) for every row.
+  void for_each(const char* stage, const std::function<void(std::size_t, std::size_t, const Row&)>& take) {
+    jobs::Pace pace(stage, rows_, hooks_);
+    Row row;
+    for (std::size_t i = 0; i < rows_ && reader_.next(row); ++i) {
+      take(i / sources_.size(), i % sources_.size(), row);
+      if ((i + 1) % kRowsBetweenChecks == 0) pace.add(kRowsBetweenChecks);
+    }
+    pace.add(0);
+  }
+
+  void require_receivers(std::size_t count) const {
+    if (receivers() == count) return;
+    text::refuse(file_, "has values of other receivers", "each place shows the values of its receiver",
+                 "use the flags with which the file was made");
+  }
+
+ private:
+  fs::path file_;
+  const jobs::RowHooks& hooks_;
+  table::RowReader<Row> reader_;
+  std::vector<std::string> sources_;
+  std::size_t rows_ = 0;
+};
+
+std::array<double, 3> three(const Vec3& v) { return {v.x, v.y, v.z}; }
+std::array<double, 3> certified(const Row& row, const Rgb& c) {
+  return {row.certified(c.r), row.certified(c.g), row.certified(c.b)};
+}
+
+}  // namespace
+
 void write_npy(const fs::path& truth_file, const fs::path& file, const jobs::RowHooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
-  const Shape shape = shape_of(truth_file, hooks);
-  ValueReader reader(truth_file);
-  const std::size_t sources = shape.sources.size();
-  const std::size_t of_source = reader.has_gradients() ? 4 : 1;
-  const std::array extents{shape.rows / sources, of_source * sources + (reader.has_totals() ? 3 : 0)};
+  Reading rows(truth_file, hooks);
+  const std::size_t sources = rows.sources().size();
+  const bool gradients = rows.has("dF_dx"), totals = rows.has("total_r");
+  const std::array extents{rows.receivers(), (gradients ? 4 : 1) * sources + (totals ? 3 : 0)};
   files::NpyFile<double> array(file, extents);
-  jobs::Pace pace("writing the NumPy file", shape.rows, hooks);
-  for (std::size_t row = 0; row < shape.rows && reader.next(); ++row) {
-    const Values values = reader.values();
-    array.append(values.certified(values.exact));
-    if (reader.has_gradients()) {
-      for (const double d : {values.gradient.x, values.gradient.y, values.gradient.z}) array.append(d);
-    }
-    if (reader.has_totals() && row % sources == sources - 1) {
-      for (const double total : {values.total.r, values.total.g, values.total.b}) array.append(values.certified(total));
-    }
-    if ((row + 1) % kRowsBetweenChecks == 0) pace.add(kRowsBetweenChecks);
-  }
-  pace.add(0);
+  rows.for_each("writing the NumPy file", [&](std::size_t, std::size_t source, const Row& row) {
+    array.append(row.certified(row.exact));
+    if (gradients) array.append(three(row.gradient));
+    if (totals && source + 1 == sources) array.append(certified(row, row.total));
+  });
   array.commit();
 }
 
 namespace {
 
-void require_receivers(const Shape& shape, std::size_t receivers, const fs::path& truth_file) {
-  if (shape.rows == receivers * shape.sources.size()) return;
-  text::refuse(truth_file, "has values of other receivers", "each place shows the values of its receiver",
-               "use the flags with which the file was made");
-}
+// Faces by their numbers, in the order of their first use.
+class FaceNumbers {
+ public:
+  static constexpr std::int32_t kNone = -1;
 
-void add(vtk::SourceValues& list, const Values& values, const ValueReader& reader) {
-  list.exact.push_back(values.exact);
-  list.lower.push_back(values.lower);
-  list.upper.push_back(values.upper);
-  list.status.push_back(static_cast<std::uint8_t>(values.status));
-  if (reader.has_gradients()) list.gradient.push_back(values.gradient);
-  if (reader.has_fractions()) list.visible_fraction.push_back(values.visible_fraction);
-  list.radiosity.push_back(values.radiosity);
-}
-
-// What the cells show.
-std::vector<vtk::Field> fields_of(const fs::path& truth_file, const Request& request, const jobs::RowHooks& hooks) {
-  const Shape shape = shape_of(truth_file, hooks);
-  require_receivers(shape, request.receivers.size(), truth_file);
-  std::vector<vtk::SourceValues> list;
-  for (const std::string& source : shape.sources) list.push_back({source, {}, {}, {}, {}, {}, {}, {}});
-  std::vector<double> totals;
-  ValueReader reader(truth_file);
-  jobs::Pace pace("reading rows", shape.rows, hooks);
-  for (std::size_t row = 0; row < shape.rows && reader.next(); ++row) {
-    const Values values = reader.values();
-    add(list[row % list.size()], values, reader);
-    if (row % list.size() == 0) totals.insert(totals.end(), {values.total.r, values.total.g, values.total.b});
-    if ((row + 1) % kRowsBetweenChecks == 0) pace.add(kRowsBetweenChecks);
+  std::int32_t of(const std::string& face) {
+    if (face.empty()) return kNone;
+    const auto [found, is_new] = numbers_.emplace(face, static_cast<std::int32_t>(names_.size()));
+    if (is_new) names_.push_back(face);
+    return found->second;
   }
-  std::vector<vtk::Field> fields = vtk::fields_of(std::move(list));
-  if (reader.has_totals()) fields.push_back({"total", 3, std::move(totals)});
-  return fields;
-}
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  std::vector<std::string> names_;
+  std::map<std::string, std::int32_t> numbers_;
+};
 
 }  // namespace
 
+void write_npz(const fs::path& truth_file, const fs::path& file, const jobs::RowHooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
+  Reading rows(truth_file, hooks);
+  const bool gradients = rows.has("dF_dx"), totals = rows.has("total_r"), fractions = rows.has("visible_fraction"),
+             unoccluded = rows.has("unoccluded");
+  const auto append = [](std::vector<double>& list, const std::array<double, 3>& numbers) {
+    list.insert(list.end(), numbers.begin(), numbers.end());
+  };
+  std::vector<double> points, normals, total, factor, fraction, free, gradient;
+  std::vector<std::int32_t> on;
+  FaceNumbers faces;
+  UnitNormal unit_normal;
+  rows.for_each("reading rows", [&](std::size_t, std::size_t source, const Row& row) {
+    if (source == 0) {
+      append(points, three(row.point));
+      append(normals, three(unit_normal.of(row.normal)));
+      on.push_back(faces.of(row.on));
+      if (totals) append(total, certified(row, row.total));
+    }
+    factor.push_back(row.certified(row.exact));
+    if (fractions) fraction.push_back(row.certified(row.visible_fraction));
+    if (unoccluded) free.push_back(row.certified(row.unoccluded));
+    if (gradients) append(gradient, three(row.gradient));
+  });
+  files::NpzFile archive(file);
+  const auto add = [&](const char* name, const std::vector<double>& numbers, std::size_t columns) {
+    const std::array shape{rows.receivers(), columns};
+    if (!numbers.empty()) archive.add(name, shape, std::span<const double>(numbers));
+  };
+  const std::size_t sources = rows.sources().size();
+  add("points", points, 3);
+  add("normals", normals, 3);
+  archive.add("on", on);
+  archive.add_texts("faces", faces.names());
+  archive.add_texts("sources", rows.sources());
+  add("F", factor, sources);
+  add("visible_fraction", fraction, sources);
+  if (gradients) {
+    archive.add("gradient", std::array{rows.receivers(), sources, std::size_t{3}}, std::span<const double>(gradient));
+  }
+  add("unoccluded", free, sources);
+  add("total", total, 3);
+  archive.add_texts("about", rows.about());
+  archive.commit();
+}
+
 void write_vtk(const Request& request, const fs::path& truth_file, const fs::path& file, const jobs::RowHooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
-  const vtk::Content content{.scene = request.scene,
-                             .receivers = request.receivers,
-                             .fields = fields_of(truth_file, request, hooks),
-                             .about = head_lines(truth_file)};
+  Reading rows(truth_file, hooks);
+  rows.require_receivers(request.receivers.size());
+  const bool gradients = rows.has("dF_dx"), totals = rows.has("total_r"), fractions = rows.has("visible_fraction");
+  std::vector<vtk::SourceValues> list;
+  for (const std::string& source : rows.sources()) list.push_back({source, {}, {}, {}, {}, {}, {}, {}});
+  std::vector<double> total;
+  rows.for_each("reading rows", [&](std::size_t, std::size_t source, const Row& row) {
+    vtk::SourceValues& values = list[source];
+    values.exact.push_back(row.exact);
+    values.lower.push_back(row.lower);
+    values.upper.push_back(row.upper);
+    values.status.push_back(static_cast<std::uint8_t>(row.status));
+    if (gradients) values.gradient.push_back(row.gradient);
+    if (fractions) values.visible_fraction.push_back(row.visible_fraction);
+    values.radiosity.push_back(row.radiosity);
+    if (totals && source == 0) total.insert(total.end(), {row.total.r, row.total.g, row.total.b});
+  });
+  std::vector<vtk::Field> fields = vtk::fields_of(std::move(list));
+  if (totals) fields.push_back({"total", 3, std::move(total)});
+  const vtk::Content content{
+      .scene = request.scene, .receivers = request.receivers, .fields = std::move(fields), .about = rows.about()};
   vtk::write(content, file, {{}, hooks.cancelled});
 }
 
 void write_exr(const exr::Frame& frame, const fs::path& truth_file, const fs::path& file, const jobs::RowHooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
-  const Shape shape = shape_of(truth_file, hooks);
-  require_receivers(shape, frame.pixels.size(), truth_file);
-  ValueReader reader(truth_file);
-  if (!reader.has_totals()) {
+  Reading rows(truth_file, hooks);
+  rows.require_receivers(frame.pixels.size());
+  if (!rows.has("total_r")) {
     text::refuse(truth_file, "has no totals", "a pixel shows the light of all sources together",
                  "compute it again with --total radiance and --force");
   }
   exr::FrameValues values(frame);
-  jobs::Pace pace("writing the image", shape.rows, hooks);
-  for (std::size_t row = 0; row < shape.rows && reader.next(); ++row) {
-    if (row % shape.sources.size() == 0) {
-      const Values one = reader.values();
-      values.set(row / shape.sources.size(), one.total, one.status != Status::kNotCertified);
-    }
-    if ((row + 1) % kRowsBetweenChecks == 0) pace.add(kRowsBetweenChecks);
-  }
+  rows.for_each("writing the image", [&](std::size_t receiver, std::size_t source, const Row& row) {
+    if (source == 0) values.set(receiver, row.total, row.status != Status::kNotCertified);
+  });
   files::WholeFile whole(file);
-  whole.append(values.exr(head_lines(truth_file)));
+  whole.append(values.exr(rows.about()));
   whole.commit();
 }
 

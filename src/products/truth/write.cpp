@@ -1,11 +1,4 @@
-// From a request to its truth file.
-//
-// 1. Check the request, and that no other work would be destroyed: the file and its journal.
-// 2. Read from the journal which rows are done. Distribute the others by chunks to any idle worker: threads of this
-//    process, and other processes if there is a team.
-// 3. Append finished rows to the journal at once, in any order. Make it durable every second.
-// 4. When every row is in the journal, write the file in order under a temporary name and rename it. Then remove the
-//    journal.
+// From a request to its truth file, and from shards.
 #include <memory>
 #include <utility>
 
@@ -20,27 +13,12 @@ namespace exactff::truth {
 namespace {
 
 namespace fs = std::filesystem;
-using files::File;
 
-void add_rows(const File& file, std::uint64_t offset, Tally& tally) {
-  constexpr std::size_t kPieceBytes = 1 << 20;
-  for (std::string text = file.read(offset, kPieceBytes); !text.empty(); text = file.read(offset, kPieceBytes)) {
-    tally.add(text);
-    offset += text.size();
-  }
-}
-
-Summary account_of(const fs::path& path, const Rows& rows) {
-  const File file(path, File::Mode::kRead);
+// The summary, of what `work` does; it gives all rows to the tally.
+template <class Work>
+Summary counted(const Work& work) {
   Tally tally;
-  if (rows.plan().shard.count > 1) {
-    jobs::require_shard_file(file, rows, [&](const std::string& text) { tally.add(text); });
-  } else {
-    add_rows(file, jobs::require_head(file, rows), tally);
-  }
-  if (!tally.whole() || tally.rows() != rows.shard_rows()) jobs::refuse_damaged(path, rows, tally.rows());
-  Summary summary;
-  summary.rows = summary.resumed = tally.rows();
+  Summary summary{work([&](std::string_view text) { tally.add(text); }), {}};
   summary.rows_by_status = tally.by_status();
   return summary;
 }
@@ -52,18 +30,13 @@ Summary write(Request request, const fs::path& file, jobs::Existing existing, co
   const kernel::StandardArithmetic arithmetic;
   const Rows rows(std::move(request));
   files::require_not_read(file, rows.request().scene->files());
-  jobs::require_free(file, existing);
-  if (jobs::is_complete(file, existing)) return account_of(file, rows);
-  Summary summary;
-  summary.rows = rows.shard_rows();
-  jobs::RowJournal journal(file, rows, existing, hooks);
-  jobs::compute_missing(rows, journal, team, hooks, summary);
-  Tally tally;
-  jobs::write_rows(rows, journal, file, hooks,
-                   [&](jobs::Range range, const std::string& text) { return tally.add_rows(text, range.rows); });
-  journal.remove();
-  summary.rows_by_status = tally.by_status();
-  return summary;
+  return counted([&](const jobs::See& see) { return jobs::write(rows, file, existing, hooks, team, see); });
+}
+
+Summary merge(const std::vector<fs::path>& shards, const fs::path& file, jobs::Existing existing,
+              const jobs::RowHooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
+  return counted([&](const jobs::See& see) { return jobs::merge(shards, file, existing, hooks, see); });
 }
 
 Summary write(Request request, const fs::path& file, jobs::Existing existing, const jobs::RowHooks& hooks) {

@@ -1,0 +1,242 @@
+#include "matrix/columns.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "kernel/float_environment.h"
+#include "text/fnv1a.h"
+#include "text/text_lines.h"
+
+namespace exactff::matrix {
+namespace {
+
+using table::Cell;
+using table::Strength;
+using table::Type;
+using Field = table::Field<Entry>;
+
+// A column of a member of ViewFactor.
+template <auto Member>
+Field factor(std::string name, Type type, std::string unit, Strength strength) {
+  using Value = std::remove_cvref_t<decltype(std::declval<ViewFactor&>().*Member)>;
+  using InTable = std::conditional_t<std::same_as<Value, std::size_t>, std::uint64_t, Value>;
+  return {{std::move(name), type, std::move(unit), strength},
+          [](const Entry& entry) -> Cell { return InTable{entry.factor.*Member}; },
+          [](Entry& entry, const Cell& cell) {
+            const InTable* const value = std::get_if<InTable>(&cell);
+            if (value != nullptr) entry.factor.*Member = *value;
+            return value != nullptr;
+          }};
+}
+
+// The same for a word.
+template <auto Member>
+Field word(std::string name) {
+  using Word = std::remove_cvref_t<decltype(std::declval<ViewFactor&>().*Member)>;
+  return {{.name = std::move(name), .type = Type::kText, .strength = Strength::kProved},
+          [](const Entry& entry) -> Cell { return to_string(entry.factor.*Member); },
+          [](Entry& entry, const Cell& cell) {
+            const std::optional<Word> known = named<Word>(std::get<std::string_view>(cell));
+            if (known) entry.factor.*Member = *known;
+            return known.has_value();
+          }};
+}
+
+Field area_to() {
+  return {{"area_to", Type::kNumber, "area", Strength::kEstimated},
+          [](const Entry& entry) -> Cell { return entry.has_area_to ? Cell(entry.factor.area_to) : Cell(); },
+          [](Entry& entry, const Cell& cell) {
+            const double* const area = std::get_if<double>(&cell);
+            entry.has_area_to = area != nullptr;
+            entry.factor.area_to = area != nullptr ? *area : 0.0;
+            return true;
+          }};
+}
+
+void add(text::Fnv1a& hash, std::span<const Selection> patches) {
+  hash.add(std::uint64_t{patches.size()});
+  for (const Selection& patch : patches) {
+    hash.add(std::uint64_t{index_of(patch.patch)});
+    hash.add(patch.face ? std::uint64_t{index_of(*patch.face)} : ~std::uint64_t{0});
+  }
+}
+
+}  // namespace
+
+const table::Fields<Entry>& columns() {
+  static const table::Fields<Entry> all(
+      "matrix",
+      {table::member_field<&Entry::from, Entry>({.name = "from", .key = true}),
+       table::member_field<&Entry::to, Entry>({.name = "to", .key = true}),
+       factor<&ViewFactor::value>("factor", Type::kNumber, "", Strength::kStated),
+       factor<&ViewFactor::lower>("lower", Type::kNumber, "", Strength::kStated),
+       factor<&ViewFactor::upper>("upper", Type::kNumber, "", Strength::kStated), word<&ViewFactor::claim>("claim"),
+       word<&ViewFactor::way>("way"), factor<&ViewFactor::accurate>("accurate", Type::kFlag, "", Strength::kProved),
+       factor<&ViewFactor::area_from>("area_from", Type::kNumber, "area", Strength::kEstimated), area_to(),
+       factor<&ViewFactor::cells>("cells", Type::kCount, "", Strength::kProved),
+       factor<&ViewFactor::event_cells>("event_cells", Type::kCount, "", Strength::kProved),
+       word<&ViewFactor::limit>("limit")});
+  return all;
+}
+
+void set_options(table::Head& head, const ViewFactorOptions& options) {
+  head.set("accuracy", options.accuracy);
+  head.set("budget", std::uint64_t{options.budget});
+  if (options.certify) head.set("certify", true);
+  if (options.both_directions) head.set("both_directions", true);
+  if (!options.sample_crowds) head.set("no_points", true);
+}
+
+ViewFactorOptions options_of(const table::Head& head) {
+  ViewFactorOptions options;
+  options.accuracy = head.number("accuracy").value_or(options.accuracy);
+  options.budget = head.count("budget").value_or(options.budget);
+  options.certify = head.flag("certify");
+  options.both_directions = head.flag("both_directions");
+  options.sample_crowds = !head.flag("no_points");
+  return options;
+}
+
+table::Head head_of(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
+                    const ViewFactorOptions& options, Surroundings surroundings) {
+  text::Fnv1a patches;
+  add(patches, from);
+  add(patches, to);
+  table::Head head;
+  head.set("scene_hash", scene.hash());
+  set_options(head, options);
+  head.set("from_patches", std::uint64_t{from.size()});
+  head.set("to_patches", std::uint64_t{to.size()});
+  head.set("patches_hash", patches.digits());
+  std::vector<std::string> further;
+  if (surroundings.back) further.emplace_back(kBack);
+  if (surroundings.open) further.emplace_back(kOpen);
+  if (surroundings.buried) further.emplace_back(kBuried);
+  if (!further.empty()) head.set("further", std::move(further));
+  return head;
+}
+
+// --- Tables ---
+
+table::Table table_of(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options) {
+  const Factors& all = matrix.factors;
+  const Surroundings surroundings{!matrix.back.empty(), !matrix.open.empty(), !matrix.buried.empty()};
+  table::Table table("matrix", head_of(scene, all.from, all.to, options, surroundings), columns().columns());
+  Entry entry;
+  const auto add = [&](std::string_view to, const ViewFactor& factor, bool has_area_to) {
+    entry.to = to;
+    entry.factor = factor;
+    entry.has_area_to = has_area_to;
+    columns().append(entry, table);
+  };
+  for (std::size_t i = 0; i < all.from.size(); ++i) {
+    entry.from = scene.name_of(all.from[i]);
+    for (std::size_t j = 0; j < all.to.size(); ++j) add(scene.name_of(all.to[j]), all.at(i, j), true);
+    if (surroundings.back) add(kBack, matrix.back[i], true);
+    if (surroundings.open) add(kOpen, matrix.open[i], false);
+    if (surroundings.buried) add(kBuried, matrix.buried[i], false);
+  }
+  return table;
+}
+
+namespace {
+
+constexpr const char* kAdvice = "use the file as `exactff matrix` wrote it";
+
+class NamedReader {
+ public:
+  NamedReader(const table::Table& table, const std::filesystem::path& file) : table_(table) {
+    named_.file = file.string();
+    named_.head = table.head();
+    if (table.kind() != columns().kind() || table.rows() == 0) {
+      complain(0, "is no matrix of view factors, or has no entries", "give a file written by `exactff matrix -o`");
+      problems_.throw_if_any();
+    }
+    entries_.resize(table.rows());
+    for (std::size_t i = 0; i < entries_.size(); ++i) take(i);
+    problems_.throw_if_any();
+  }
+
+  NamedMatrix read() {
+    find_columns();
+    for (std::size_t first = 0; first < entries_.size() && problems_.empty(); first += width_) take_row(first);
+    problems_.throw_if_any();
+    return std::move(named_);
+  }
+
+ private:
+  void complain(std::size_t line, std::string what, const char* advice = kAdvice) {
+    problems_.add({named_.file, line, std::move(what), "the file contradicts itself", advice});
+  }
+
+  void take(std::size_t row) {
+    const auto bad = columns().read(table_, row, entries_[row]);
+    const ViewFactor& f = entries_[row].factor;
+    if (bad) {
+      complain(table_.line_of(row), "column " + text::in_quotes(*bad) + " has an impossible value");
+    } else if (!(0.0 <= f.lower && f.lower <= f.value && f.value <= f.upper && f.upper <= 1.0) ||
+               !(f.area_from > 0.0)) {
+      complain(table_.line_of(row),
+               "the entry is not within its bounds, these are not within 0 and 1, or the area is not positive");
+    }
+  }
+
+  // Those of the first row: up to the first entry of another.
+  void find_columns() {
+    width_ = 1;
+    while (width_ < entries_.size() && entries_[width_].from == entries_.front().from &&
+           entries_[width_].to != entries_.front().to) {
+      ++width_;
+    }
+    patches_ = width_;
+    const auto take_off = [&](std::string_view name) {
+      const bool there = patches_ > 0 && entries_[patches_ - 1].to == name;
+      patches_ -= there ? 1 : 0;
+      return there;
+    };
+    has_buried_ = take_off(kBuried);
+    (void)take_off(kOpen);
+    has_back_ = take_off(kBack);
+    for (std::size_t j = 0; j < patches_; ++j) named_.to.push_back(entries_[j].to);
+  }
+
+  void take_row(std::size_t first) {
+    named_.from.push_back(entries_[first].from);
+    for (std::size_t i = first; i < first + width_; ++i) {
+      const Entry& begin = entries_[first];
+      if (i == entries_.size() || entries_[i].from != begin.from || entries_[i].to != entries_[i - first].to ||
+          entries_[i].factor.area_from != begin.factor.area_from) {
+        return complain(
+            table_.line_of(std::min(i, entries_.size() - 1)),
+            "the row of " + text::in_quotes(begin.from) + " has not the columns of the first row, or two areas");
+      }
+      entries_of(i - first).push_back(entries_[i].factor);
+      named_.lines.push_back(table_.line_of(i));
+    }
+  }
+
+  std::vector<ViewFactor>& entries_of(std::size_t column) {
+    if (column < patches_) return named_.entries;
+    if (has_buried_ && column + 1 == width_) return named_.buried;
+    return column == patches_ && has_back_ ? named_.back : named_.open;
+  }
+
+  const table::Table& table_;
+  NamedMatrix named_;
+  std::vector<Entry> entries_;
+  text::ProblemList problems_;
+  std::size_t width_ = 1;    // entries of a row
+  std::size_t patches_ = 1;  // those to patches
+  bool has_back_ = false, has_buried_ = false;
+};
+
+}  // namespace
+
+NamedMatrix read_named(const std::filesystem::path& file) {
+  const kernel::StandardArithmetic arithmetic;
+  return NamedReader(table::read(file), file).read();
+}
+
+}  // namespace exactff::matrix

@@ -1,0 +1,43 @@
+// The columns of a matrix file, and what its head says.
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "exactff/matrix.h"
+#include "table/fields.h"
+
+namespace exactff::matrix {
+
+struct Entry {
+  std::string from, to;  // names of patches, or of an additional column
+  ViewFactor factor;
+  bool has_area_to = true;  // not of what is open or buried
+};
+
+[[nodiscard]] const table::Fields<Entry>& columns();
+
+// The claim, way or limit of this text.
+template <class Word>
+std::optional<Word> named(std::string_view word) {
+  for (int i = 0; !to_string(static_cast<Word>(i)).empty(); ++i) {
+    if (word == to_string(static_cast<Word>(i))) return static_cast<Word>(i);
+  }
+  return std::nullopt;
+}
+
+// The columns besides patches.
+struct Surroundings {
+  bool back = false, open = false, buried = false;
+};
+
+// Everything that the entries depend on.
+[[nodiscard]] table::Head head_of(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
+                                  const ViewFactorOptions& options, Surroundings surroundings);
+// The options of view factors, in the head of any table that depends on them.
+void set_options(table::Head& head, const ViewFactorOptions& options);
+
+}  // namespace exactff::matrix

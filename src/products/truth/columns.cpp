@@ -1,0 +1,159 @@
+#include "truth/columns.h"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace exactff::truth {
+namespace {
+
+using table::Cell;
+using table::Column;
+using table::Strength;
+using table::Type;
+using Field = table::Field<Row>;
+
+constexpr std::string_view kKink = "kink";
+
+// A number that `of` finds in the row.
+template <auto Of>
+Field number(std::string name, std::string unit, Strength strength) {
+  return {{std::move(name), Type::kNumber, std::move(unit), strength},
+          [](const Row& row) -> Cell {
+            const double value = Of(const_cast<Row&>(row));
+            return std::isnan(value) ? Cell() : Cell(value);
+          },
+          [](Row& row, const Cell& cell) {
+            const double* const value = std::get_if<double>(&cell);
+            Of(row) = value != nullptr ? *value : std::numeric_limits<double>::quiet_NaN();
+            return true;
+          }};
+}
+
+// A column for each coordinate of a vector.
+template <auto Member>
+void add_vector(std::vector<Field>& list, const std::array<std::string, 3>& names, const std::string& unit,
+                Strength strength) {
+  list.push_back(number<[](Row& row) -> double& { return (row.*Member).x; }>(names[0], unit, strength));
+  list.push_back(number<[](Row& row) -> double& { return (row.*Member).y; }>(names[1], unit, strength));
+  list.push_back(number<[](Row& row) -> double& { return (row.*Member).z; }>(names[2], unit, strength));
+}
+
+// A column for each channel: "total_r", "total_g", "total_b".
+template <auto Member>
+void add_channels(std::vector<Field>& list, const std::string& name, const std::string& unit, Strength strength) {
+  list.push_back(number<[](Row& row) -> double& { return (row.*Member).r; }>(name + "_r", unit, strength));
+  list.push_back(number<[](Row& row) -> double& { return (row.*Member).g; }>(name + "_g", unit, strength));
+  list.push_back(number<[](Row& row) -> double& { return (row.*Member).b; }>(name + "_b", unit, strength));
+}
+
+template <auto Member>
+Field one(std::string name, std::string unit, Strength strength) {
+  return number<[](Row& row) -> double& { return row.*Member; }>(std::move(name), std::move(unit), strength);
+}
+
+template <auto Member>
+Field text(std::string name, bool key = false) {
+  return table::member_field<Member, Row>({.name = std::move(name), .key = key});
+}
+
+template <class Word>
+bool read_word(const Cell& cell, std::span<const Word> words, Word& word) {
+  for (const Word one : words) {
+    if (std::get<std::string_view>(cell) != to_string(one)) continue;
+    word = one;
+    return true;
+  }
+  return false;
+}
+
+constexpr std::array kStatuses = {Status::kCertified, Status::kZero, Status::kUnderflow, Status::kNotCertified};
+constexpr std::array kDerivativeStatuses = {DerivativeStatus::kCertified, DerivativeStatus::kZero,
+                                            DerivativeStatus::kUnderflow, DerivativeStatus::kEnclosed};
+
+template <auto Member>
+Field status(std::string name) {
+  return {{.name = std::move(name), .type = Type::kText, .strength = Strength::kProved},
+          [](const Row& row) -> Cell { return to_string(row.*Member); },
+          [](Row& row, const Cell& cell) { return read_word<Status>(cell, kStatuses, row.*Member); }};
+}
+
+template <std::size_t Axis>
+Field derivative_status(std::string name) {
+  return {{.name = std::move(name), .type = Type::kText, .strength = Strength::kProved},
+          [](const Row& row) -> Cell { return row.kink ? kKink : to_string(row.gradient_status[Axis]); },
+          [](Row& row, const Cell& cell) {
+            row.kink = std::get<std::string_view>(cell) == kKink;
+            return row.kink || read_word<DerivativeStatus>(cell, kDerivativeStatuses, row.gradient_status[Axis]);
+          }};
+}
+
+// Which of the optional columns there are.
+struct Wanted {
+  bool unit_normals = true, uv = true, unoccluded = true, visible_fraction = true, gradient = true, total = true,
+       total_bounds = true;
+  std::string unit_of_total = "Ke";
+};
+
+std::vector<Field> fields(const Wanted& wanted) {
+  std::vector<Field> list = {text<&Row::receiver>("receiver", true), text<&Row::on>("on")};
+  add_vector<&Row::point>(list, {"x", "y", "z"}, "length", Strength::kGiven);
+  add_vector<&Row::normal>(list, {"nx", "ny", "nz"}, "of any length", Strength::kGiven);
+  if (wanted.unit_normals) add_vector<&Row::unit_normal>(list, {"ux", "uy", "uz"}, "", Strength::kCertified);
+  if (wanted.uv) {
+    list.push_back(one<&Row::u>("u", "", Strength::kCertified));
+    list.push_back(one<&Row::v>("v", "", Strength::kCertified));
+  }
+  list.push_back(text<&Row::source>("source", true));
+  list.push_back(one<&Row::exact>("exact", "", Strength::kCertified));
+  list.push_back(one<&Row::lower>("lower", "", Strength::kProved));
+  list.push_back(one<&Row::upper>("upper", "", Strength::kProved));
+  if (wanted.unoccluded) {
+    list.push_back(one<&Row::unoccluded>("unoccluded", "", Strength::kCertified));
+    list.push_back(status<&Row::unoccluded_status>("unoccluded_status"));
+  }
+  if (wanted.visible_fraction) {
+    list.push_back(one<&Row::visible_fraction>("visible_fraction", "", Strength::kCertified));
+  }
+  if (wanted.gradient) {
+    add_vector<&Row::gradient>(list, {"dF_dx", "dF_dy", "dF_dz"}, "1/length", Strength::kCertified);
+    list.push_back(derivative_status<0>("dF_dx_status"));
+    list.push_back(derivative_status<1>("dF_dy_status"));
+    list.push_back(derivative_status<2>("dF_dz_status"));
+  }
+  add_channels<&Row::radiosity>(list, "radiosity", "Ke", Strength::kEstimated);
+  list.push_back(one<&Row::largest_rho_b>("largest_rho_b", "Ke", Strength::kEstimated));
+  if (wanted.total) add_channels<&Row::total>(list, "total", wanted.unit_of_total, Strength::kCertified);
+  if (wanted.total_bounds) {
+    add_channels<&Row::total_lower>(list, "total_lower", wanted.unit_of_total, Strength::kProved);
+    add_channels<&Row::total_upper>(list, "total_upper", wanted.unit_of_total, Strength::kProved);
+  }
+  list.push_back(status<&Row::status>("status"));
+  return list;
+}
+
+}  // namespace
+
+double Row::certified(double number) const {
+  return status == Status::kNotCertified ? std::numeric_limits<double>::quiet_NaN() : number;
+}
+
+Columns columns_of(const Request& request) {
+  return {"truth", fields({.unit_normals = request.unit_normals,
+                           .uv = request.uv,
+                           .unoccluded = request.unoccluded,
+                           .visible_fraction = request.visible_fraction,
+                           .gradient = request.gradient,
+                           .total = request.total.has_value(),
+                           .total_bounds = request.radiosities.has_value(),
+                           .unit_of_total = request.total ? unit_of(*request.total, request.ke) : ""})};
+}
+
+const Columns& all_columns() {
+  static const Columns all("truth", fields({}));
+  return all;
+}
+
+}  // namespace exactff::truth
