@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <concepts>
 
 #include "exactff/version.h"
 #include "table/csv.h"
@@ -134,22 +133,7 @@ namespace {
 std::string words_of(const table::HeadValue* value) {
   if (value == nullptr) return "none";
   constexpr std::size_t kMost = 200;
-  const std::string words = std::visit(
-      [](const auto& one) -> std::string {
-        using Value = std::remove_cvref_t<decltype(one)>;
-        if constexpr (std::same_as<Value, std::string>) {
-          return one;
-        } else if constexpr (std::same_as<Value, bool>) {
-          return one ? "yes" : "no";
-        } else if constexpr (std::same_as<Value, std::vector<std::string>>) {
-          return text::enumerate(one);
-        } else if constexpr (std::same_as<Value, double>) {
-          return text::shortest(one);
-        } else {
-          return std::to_string(one);
-        }
-      },
-      *value);
+  const std::string words = table::words_of(*value);
   return text::printable(text::beginning(words, kMost)) + (words.size() > kMost ? "..." : "");
 }
 
@@ -165,7 +149,11 @@ std::pair<std::string, std::string> first_difference(const table::ParsedHead& a,
     }
   }
   if (a.kind != b.kind) return {"kind " + a.kind, "kind " + b.kind};
-  if (a.columns != b.columns) return {"other columns", "its own"};
+  const auto differ = std::ranges::mismatch(a.columns, b.columns);
+  const auto column = [](auto at, const std::vector<table::Column>& columns) {
+    return at == columns.end() ? std::string("fewer columns") : "column " + at->name;
+  };
+  if (a.columns != b.columns) return {column(differ.in1, a.columns), column(differ.in2, b.columns)};
   return {"another version of exactff", "version " + std::string(kVersion)};
 }
 

@@ -65,7 +65,7 @@ void add(ShardFiles& shards, ShardFile shard) {
   if (!shards.empty()) {
     const ShardFile& first = shards.begin()->second;
     const Plan& other = first.head.plan;
-    if (plan.shard.count != other.shard.count || plan.chunk != other.chunk || plan.count != other.count) {
+    if (plan.shard.count != other.shard.count || plan.chunk != other.chunk) {
       refuse(shard.file.path(), "is one of " + text::counted(plan.shard.count, "shard"),
              first.file.path().string() + " is one of " + std::to_string(other.shard.count),
              "name shards of the same request");

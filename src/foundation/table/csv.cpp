@@ -25,10 +25,10 @@ std::optional<ParsedHead> parse_csv_head(std::string_view lines) {
 }
 
 void CsvLine::add(const Cell& cell) {
-  if (!first_) text_ += ',';
-  first_ = false;
+  const bool is_first = std::exchange(first_, false);
+  if (!is_first) text_ += ',';
   std::visit(
-      [this](const auto& value) {
+      [&](const auto& value) {
         using Value = std::remove_cvref_t<decltype(value)>;
         if constexpr (std::same_as<Value, double>) {
           text_ += text::shortest(value);
@@ -37,7 +37,9 @@ void CsvLine::add(const Cell& cell) {
         } else if constexpr (std::same_as<Value, bool>) {
           text_ += value ? "yes" : "no";
         } else if constexpr (std::same_as<Value, std::string_view>) {
-          text_ += text::csv_field(value);
+          // A line that begins with '#' would be a comment.
+          const std::string field = text::csv_field(value);
+          text_ += is_first && field.starts_with('#') ? '"' + field + '"' : field;
         }
       },
       cell);
@@ -75,7 +77,10 @@ void CsvReader::read_names() {
 
 void CsvReader::take_head(std::string_view comment) {
   head_ = parse_csv_head(comment);
-  if (head_ || !(comment.starts_with("# {\"exactff\"") || comment.starts_with("# exactff "))) return;
+  const auto is_old = [&](const char* kind) { return comment.find(kind) != std::string_view::npos; };
+  const bool was_table =
+      comment.starts_with("# exactff ") && (is_old(" truth: ") || is_old(" matrix: ") || is_old(" radiosity: "));
+  if (head_ || !(was_table || comment.starts_with("# {\"exactff\""))) return;
   throw InputError({.file = lines_.file(),
                     .line = 1,
                     .what = "the head is not that of a table of this version",
@@ -97,6 +102,11 @@ void CsvReader::take_names() {
   for (auto name = names_.begin(); name != names_.end(); ++name) {
     if (std::find(names_.begin(), name, *name) == name) continue;
     complain("column " + text::in_quotes(*name) + " occurs twice", "only one can count", "rename one");
+  }
+  for (const Column& column : head_ ? head_->columns : std::vector<Column>()) {
+    if (std::ranges::find(names_, column.name) != names_.end()) continue;
+    complain("there is no column " + text::in_quotes(column.name), "the head says that the table has it",
+             "use the file as exactff wrote it");
   }
   if (names_.size() > 1 || names_.front().find('\t') == std::string::npos) return;
   complain("the column names are separated by tabs", "fields are separated by commas or semicolons",

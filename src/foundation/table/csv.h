@@ -31,6 +31,11 @@ struct ParsedHead {
 // Nothing unless head_line has written it.
 [[nodiscard]] std::optional<ParsedHead> parse_head(std::string_view json);
 
+// For readers: a text, yes or no, a number, "a, b and c".
+[[nodiscard]] std::string words_of(const HeadValue& value);
+// The head in lines "name: value", after the version and the kind: for files that keep texts.
+[[nodiscard]] std::vector<std::string> lines_of(const ParsedHead& head);
+
 // The lines above the rows.
 [[nodiscard]] std::string csv_head(std::string_view kind, const Head& head, std::span<const Column> columns);
 // Of such lines; nothing if they are not those of a table.
@@ -39,8 +44,9 @@ struct ParsedHead {
 // A line of a CSV file, appended to a text. Fields are added from left to right.
 class CsvLine {
  public:
-  explicit CsvLine(std::string& text) : text_(text) {}
-  ~CsvLine() { text_ += '\n'; }
+  explicit CsvLine(std::string& text) : text_(text), start_(text.size()) {}
+  // A blank line would be none.
+  ~CsvLine() { text_ += text_.size() == start_ ? "\"\"\n" : "\n"; }
   CsvLine(const CsvLine&) = delete;
   CsvLine& operator=(const CsvLine&) = delete;
 
@@ -48,6 +54,7 @@ class CsvLine {
 
  private:
   std::string& text_;
+  const std::size_t start_;
   bool first_ = true;
 };
 

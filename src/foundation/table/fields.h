@@ -132,6 +132,7 @@ class RowReader {
   RowReader(const std::filesystem::path& file, const Fields<Row>& fields, const std::string& advice)
       : csv_(file, "a table of the kind " + fields.kind()) {
     (void)csv_.require_kind(fields.kind(), advice);
+    csv_.throw_if_any();
     for (const Field<Row>& field : fields.all()) {
       const std::optional<std::size_t> column = csv_.column(field.column.name);
       if (column && field.set != nullptr) fields_.emplace_back(*column, &field);

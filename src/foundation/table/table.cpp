@@ -11,6 +11,7 @@
 #include "kernel/expect.h"
 #include "table/csv.h"
 #include "text/json_document.h"
+#include "text/phrases.h"
 
 namespace exactff::table {
 namespace {
@@ -110,6 +111,31 @@ std::vector<std::string> Head::list(std::string_view name) const {
 std::optional<double> Head::number(std::string_view name) const {
   if (const auto whole = count(name)) return static_cast<double>(*whole);
   return as<double>(find(name));
+}
+
+std::string words_of(const HeadValue& value) {
+  return std::visit(
+      [](const auto& one) -> std::string {
+        using Value = std::remove_cvref_t<decltype(one)>;
+        if constexpr (std::same_as<Value, std::string>) {
+          return one;
+        } else if constexpr (std::same_as<Value, bool>) {
+          return one ? "yes" : "no";
+        } else if constexpr (std::same_as<Value, std::vector<std::string>>) {
+          return text::enumerate(one);
+        } else if constexpr (std::same_as<Value, double>) {
+          return text::shortest(one);
+        } else {
+          return std::to_string(one);
+        }
+      },
+      value);
+}
+
+std::vector<std::string> lines_of(const ParsedHead& head) {
+  std::vector<std::string> lines = {text::program_version() + ' ' + head.kind};
+  for (const auto& [name, value] : head.head.values()) lines.push_back(name + ": " + words_of(value));
+  return lines;
 }
 
 std::string head_line(std::string_view kind, const Head& head, std::span<const Column> columns) {

@@ -43,8 +43,8 @@ class Reading {
     jobs::Pace pace("reading rows", 0, silent);
     table::RowReader<Row> counter = reader_of(file);
     for (Row row; counter.next(row); ++rows_) {
-      if (sources_.empty() || row.source != sources_[rows_ % sources_.size()] || !kernel::is_finite(row.normal) ||
-          row.normal == Vec3{}) {
+      const bool no_normal = counter.has("nx") && (!kernel::is_finite(row.normal) || row.normal == Vec3{});
+      if (sources_.empty() || row.source != sources_[rows_ % sources_.size()] || no_normal) {
         counter.damaged();
       }
       if (rows_ % kRowsBetweenChecks == 0) pace.add(0);
@@ -56,11 +56,7 @@ class Reading {
   [[nodiscard]] std::size_t rows() const { return rows_; }
   [[nodiscard]] std::size_t receivers() const { return rows_ / sources_.size(); }
   [[nodiscard]] bool has(std::string_view column) const { return reader_.has(column); }
-  // The head, as text.
-  [[nodiscard]] std::vector<std::string> about() const {
-    const table::ParsedHead& head = reader_.head();
-    return {table::head_line(head.kind, head.head, head.columns)};
-  }
+  [[nodiscard]] std::vector<std::string> about() const { return table::lines_of(reader_.head()); }
 
   // Calls take(receiver, source, row) for every row.
   void for_each(const char* stage, const std::function<void(std::size_t, std::size_t, const Row&)>& take) {

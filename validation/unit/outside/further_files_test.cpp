@@ -7,10 +7,13 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "exactff/truth.h"
 #include "support/program.h"
+#include "table/csv.h"
 
 namespace exactff {
 namespace {
@@ -144,9 +147,22 @@ TEST_F(FurtherFiles, AreWholeOrAbsentWhateverMomentASignalComes) {
   EXPECT_EQ(doubles("t.npy").size(), 3600U);
 }
 
+// Of a small truth file with the sources s and t.
+std::string small_head() {
+  table::Head head;
+  head.set("sources", std::vector<std::string>{"s", "t"});
+  std::vector<table::Column> columns;
+  for (const char* name : {"receiver", "source"}) columns.push_back({.name = name, .type = table::Type::kText});
+  for (const char* name : {"exact", "lower", "upper", "radiosity_r", "radiosity_g", "radiosity_b"}) {
+    columns.push_back({.name = name});
+  }
+  columns.push_back({.name = "status", .type = table::Type::kText});
+  return table::csv_head("truth", head, columns);
+}
+const std::string kSmallHead = small_head();
+
 TEST_F(FurtherFiles, HaveNoNumberWhereAValueIsNotCertified) {
-  const std::string head = "# exactff\nreceiver,source,exact,lower,upper,radiosity_r,radiosity_g,radiosity_b,status\n";
-  const fs::path file = directory_.write("t.csv", head +
+  const fs::path file = directory_.write("t.csv", kSmallHead +
                                                       "a,s,0.5,0.25,0.75,0,0,0,not certified\n"
                                                       "a,t,0.25,0.125,0.5,0,0,0,certified\n"
                                                       "b,s,0,0,0,0,0,0,zero\nb,t,0,0,5e-324,0,0,0,underflow\n");
@@ -159,24 +175,21 @@ TEST_F(FurtherFiles, HaveNoNumberWhereAValueIsNotCertified) {
 }
 
 TEST_F(FurtherFiles, AreRefusedForFilesThatHoldOtherRows) {
-  const std::string head = "# exactff\nreceiver,source,exact,lower,upper,radiosity_r,radiosity_g,radiosity_b,status\n";
   for (const char* rows : {"a,s,0,0,0,0,0,0,zero\na,t,0,0,0,0,0,0,zero\nb,s,0,0,0,0,0,0,zero\n",  // one is missing
                            "a,s,0,0,0,0,0,0,zero\na,t,0,0,0,0,0,0,zero\nb,u,0,0,0,0,0,0,zero\nb,s,0,0,0,0,0,0,zero\n",
                            "a,s,0,0,0,0,0,0\n", "a,s,x,0,0,0,0,0,zero\n", "a,s,0,0,0,0,0,0,zer\n", ""}) {
-    const fs::path file = directory_.write("t.csv", head + rows);
+    const fs::path file = directory_.write("t.csv", kSmallHead + rows);
     EXPECT_THROW(truth::write_npy(file, path("t.npy")), InputError) << rows;
     EXPECT_THROW(truth::write_npz(file, path("t.npy")), InputError) << rows;
     EXPECT_FALSE(fs::exists(path("t.npy"))) << rows;
   }
 }
 
-TEST_F(FurtherFiles, HoldReceiversInOneFileOnlyIfThereAreSome) {
-  const std::string head = "receiver,source,exact,lower,upper,radiosity_r,radiosity_g,radiosity_b,status";
-  const fs::path without = directory_.write("t.csv", head + "\na,s,0,0,0,0,0,0,zero\n");
-  EXPECT_THROW(truth::write_npz(without, path("t.npz")), InputError);
-  const fs::path zero = directory_.write("z.csv", head + ",x,y,z,nx,ny,nz,on\na,s,0,0,0,0,0,0,zero,1,2,3,0,0,0,\n");
-  EXPECT_THROW(truth::write_npz(zero, path("t.npz")), InputError);
-  EXPECT_FALSE(fs::exists(path("t.npz")));
+TEST_F(FurtherFiles, AreRefusedIfColumnsOfTheHeadAreMissing) {
+  std::string text = text_of(directory_.write("t.csv", kSmallHead + "a,s,0,0,0,0,0,0,zero\na,t,0,0,0,0,0,0,zero\n"));
+  text.replace(text.rfind("receiver,"), 8, "id");
+  (void)directory_.write("t.csv", text);
+  EXPECT_THROW(truth::write_npy(path("t.csv"), path("t.npy")), InputError);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/program.h"
+#include "table/csv.h"
 
 namespace exactff {
 namespace {
@@ -39,10 +40,13 @@ class ReceiverFlags : public testing::Test {
     std::string error;
     std::string text;
 
-    [[nodiscard]] std::string comment(const std::string& key) const {
-      const std::size_t at = text.find("# " + key + ": ");
-      return at == std::string::npos ? ""
-                                     : text.substr(at, std::min(text.find('\n', at), text.find(", hash", at)) - at);
+    // A value of the head; of a list, with plus signs.
+    [[nodiscard]] std::string head(const std::string& key) const {
+      const auto parsed = table::parse_csv_head(text);
+      if (!parsed) return "no head";
+      std::string list = parsed->head.text(key).value_or("");
+      for (const std::string& one : parsed->head.list(key)) list += (list.empty() ? "" : " + ") + one;
+      return list;
     }
     // The first field of each row, unparsed.
     [[nodiscard]] Words ids() const {
@@ -96,13 +100,13 @@ class ReceiverFlags : public testing::Test {
 
 TEST_F(ReceiverFlags, AGridIsDescribedAndItsCellsNamed) {
   const Truth run = truth({"--on", "floor", "--grid", "2x1"});
-  EXPECT_EQ(run.comment("receivers"), "# receivers: floor, grid 2x1");
+  EXPECT_EQ(run.head("receivers"), "floor, grid 2x1");
   EXPECT_EQ(run.ids(), (Words{"r1c1", "r1c2"}));
 }
 
 TEST_F(ReceiverFlags, AGridOnSeveralFacesNamesThem) {
   const Truth run = truth({"--on", "lid", "--grid", "1x2", "--per-face"});
-  EXPECT_EQ(run.comment("receivers"), "# receivers: lid, grid 1x2, per face");
+  EXPECT_EQ(run.head("receivers"), "lid, grid 1x2, per face");
   EXPECT_EQ(run.ids(), (Words{"lid:1/r1c1", "lid:2/r1c1", "lid:2/r2c1"}));
   EXPECT_EQ(truth({"--on", "lid,floor", "--grid", "1x1"}).ids(), (Words{"lid:1/r1c1", "floor:1/r1c1"}));
 }
@@ -126,7 +130,7 @@ TEST_F(ReceiverFlags, AutoFindsTheFaces) {
       directory_.write("points.csv", "id,x,y,z,nx,ny,nz\na,3,3,1e-6,0,0,1\nb,1.5,1.5,1,0,0,1\nc,3,3,0.5,0,0,1\n")
           .string();
   const Truth run = truth({"--receivers", points, "--on", "auto"});
-  EXPECT_EQ(run.comment("receivers"), "# receivers: points.csv, on auto, 1 without a face");
+  EXPECT_EQ(run.head("receivers"), "points.csv, on auto, 1 without a face");
   const std::string warning =
       "warning: --on auto found no face for 1 of 3 receivers (they now lie on none); --on auto:DISTANCE looks further "
       "away\n";
@@ -142,31 +146,31 @@ TEST_F(ReceiverFlags, AutoFindsTheFaces) {
 
 TEST_F(ReceiverFlags, Vertices) {
   const Truth run = truth({"--on", "lid:2", "--vertices"});
-  EXPECT_EQ(run.comment("receivers"), "# receivers: lid:2, vertices");
+  EXPECT_EQ(run.head("receivers"), "lid:2, vertices");
   EXPECT_EQ(run.ids(), (Words{"lid:2/1", "lid:2/2", "lid:2/3"}));
 }
 
 TEST_F(ReceiverFlags, Centres) {
   EXPECT_EQ(truth({"--on", "lid", "--on", "floor", "--centres"}).ids(), (Words{"lid:1", "floor:1"}));
   const Truth run = truth({"--on", "lid", "--on", "floor", "--centres", "--per-face"});
-  EXPECT_EQ(run.comment("receivers"), "# receivers: lid,floor, centres, per face");
+  EXPECT_EQ(run.head("receivers"), "lid,floor, centres, per face");
   EXPECT_EQ(run.ids(), (Words{"lid:1", "lid:2", "floor:1"}));
 }
 
 TEST_F(ReceiverFlags, SamplesHaveASeedOfTheirOwn) {
   const Truth first = truth({"--on", "floor", "--samples", "3"});
-  EXPECT_EQ(first.comment("receivers"), "# receivers: floor, 3 samples, seed 1");
+  EXPECT_EQ(first.head("receivers"), "floor, 3 samples, seed 1");
   EXPECT_EQ(first.ids(), (Words{"1", "2", "3"}));
   EXPECT_EQ(first.text, truth({"--on", "floor", "--samples", "3", "--sample-seed", "1"}).text);
   const Truth other = truth({"--on", "floor", "--samples", "3", "--sample-seed", "18446744073709551615"});
-  EXPECT_EQ(other.comment("receivers"), "# receivers: floor, 3 samples, seed 18446744073709551615");
+  EXPECT_EQ(other.head("receivers"), "floor, 3 samples, seed 18446744073709551615");
   EXPECT_NE(first.text.substr(first.text.find("\n1,")), other.text.substr(other.text.find("\n1,")));
 }
 
 TEST_F(ReceiverFlags, AFileIsCalledByItsName) {
   const fs::path file = directory_.write("points.csv", "id,x,y,z,nx,ny,nz\nhere,1,1,0,0,0,1\n");
   const Truth run = truth({"--receivers", file.string()});
-  EXPECT_EQ(run.comment("receivers"), "# receivers: points.csv");
+  EXPECT_EQ(run.head("receivers"), "points.csv");
   EXPECT_EQ(run.ids(), (Words{"here"}));
 }
 
@@ -180,19 +184,19 @@ TEST_F(ReceiverFlags, SeveralPatchesMayCarryReceivers) {
 
 TEST_F(ReceiverFlags, AllIsEveryPatchWithArea) {
   EXPECT_EQ(truth({"--on", "all", "--centres"}).ids(), (Words{"floor:1", "lid:1", "\"a,b:1\"", "lamp:1"}));
-  EXPECT_EQ(truth({"--on", "floor", "--centres"}, "all").comment("sources"), "# sources: floor + lid + a,b + lamp");
+  EXPECT_EQ(truth({"--on", "floor", "--centres"}, "all").head("sources"), "floor + lid + a,b + lamp");
 }
 
 TEST_F(ReceiverFlags, APatchNamedAllWins) {
   const std::string scene = directory_.write("all.obj", kRoom + "g all\nf 1 2 4\n").string();
   EXPECT_EQ(truth({"--on", "all", "--centres"}, "lamp", scene).ids(), (Words{"all:1"}));
-  EXPECT_EQ(truth({"--on", "floor", "--centres"}, "all", scene).comment("sources"), "# sources: all");
+  EXPECT_EQ(truth({"--on", "floor", "--centres"}, "all", scene).head("sources"), "all");
 }
 
 TEST_F(ReceiverFlags, SourcesAreThoseThatEmitUnlessNamed) {
-  EXPECT_EQ(truth({"--on", "floor", "--centres"}, "").comment("sources"), "# sources: lamp");
+  EXPECT_EQ(truth({"--on", "floor", "--centres"}, "").head("sources"), "lamp");
   EXPECT_EQ(truth({"--on", "floor", "--centres"}, "lid,a,b").exit_code, 2);
-  EXPECT_EQ(truth({"--on", "floor", "--centres", "--source", "lid:2"}).comment("sources"), "# sources: lid:2 + lamp");
+  EXPECT_EQ(truth({"--on", "floor", "--centres", "--source", "lid:2"}).head("sources"), "lid:2 + lamp");
 }
 
 TEST_F(ReceiverFlags, WhatIsMissingIsTold) {

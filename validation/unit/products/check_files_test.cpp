@@ -19,12 +19,11 @@ using validation::complaint;
 
 TEST(TruthFile, TellsRowsSourcesAndFaces) {
   const Truth truth = truth_of(
-      "# exactff 0.1.0 truth\r\n# scene: room.obj\r\n"
+      "# of room.obj\r\n# by hand\r\n"
       "receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,radiosity_r,radiosity_g,radiosity_b,largest_rho_b,status\r\n"
       "\"1,1\",floor:2,1,2,3,0,0,2,light,0.25,0.2,0.3,1,2,3,12,certified\r\n"
       "\"1,1\",floor:2,1,2,3,0,0,2,lamp,0,0,0,0,0,0,7,zero\r\n"
       "p,,1,2,3,0,1,0,light,0,0,5e-324,0,0,0,12,underflow\r\n");
-  EXPECT_EQ(truth.header, (std::vector<std::string>{"exactff 0.1.0 truth", "scene: room.obj"}));
   EXPECT_EQ(truth.sources, (std::vector<std::string>{"light", "lamp"}));
   ASSERT_EQ(truth.rows.size(), 3U);
   const TruthRow& first = truth.rows.front();

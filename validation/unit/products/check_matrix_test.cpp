@@ -114,45 +114,6 @@ TEST_F(CheckMatrix, AnErrorIsTheDistanceFromTheBounds) {
   EXPECT_NEAR(low.worst[0].error, -0.0005, 1e-15);
 }
 
-TEST_F(CheckMatrix, ClaimsOfOlderFilesAreEstimates) {
-  truth_ = write("old.csv",
-                 "from,to,factor,lower,upper,claim,accurate,area_from,area_to,cells,event_cells\n"
-                 "a,a,0,0,0,zero,yes,1,1,0,0\na,b,0.5,0.4995,0.5005,topology-proved,yes,1,2,9,0\n"
-                 "b,a,0.25,0.2,0.3,statistical,no,2,1,9,0\nb,b,0,0,0,zero,yes,2,2,0,0\n");
-  const matrix::Table table = matrix::read_csv(truth_);
-  EXPECT_TRUE(table.has_old_claims);
-  EXPECT_EQ(table.entries[1].claim, Claim::kEstimated);
-  EXPECT_EQ(table.entries[1].way, Way::kCells);
-  EXPECT_EQ(table.entries[2].claim, Claim::kEstimated);
-  EXPECT_EQ(table.entries[2].way, Way::kPoints);
-  const OfMatrix found = report(write("m.csv", "0,0.5\n0.25,0\n"));
-  EXPECT_TRUE(found.passed());
-  EXPECT_NE(sentences(found.matrix).front().find("'topology-proved' and 'statistical' count as estimated"),
-            std::string::npos);
-  SetUp();
-  EXPECT_FALSE(matrix::read_csv(truth_).has_old_claims);
-}
-
-// As `exactff matrix --draft` wrote it until 2026-11-26.
-TEST_F(CheckMatrix, WholeViewsOfOldDraftsArePoints) {
-  truth_ = write("draft.csv",
-                 "# exactff 0.1.0 matrix: view factors from patch to patch, areas in the scene's unit squared\n"
-                 "# scene hash f059258cc9a42927; accuracy 0.001, a draft of at least 144 views in each row\n"
-                 "# 1 row, 2 columns, hash of the patches 8565febb2b95be45, (back)\n"
-                 "from,to,factor,lower,upper,claim,way,accurate,area_from,area_to,cells,event_cells,limit\n"
-                 "a,a,0,0,0,zero,cells,yes,24,24,0,0,none\n"
-                 "a,b,0.25,0.125,0.5,estimated,views,no,24,1.125,168,0,budget\n"
-                 "a,(back),0.5,0.25,0.75,estimated,views,no,24,0,168,0,budget\n");
-  EXPECT_TRUE(matrix::is_csv(truth_));
-  const matrix::Table table = matrix::read_csv(truth_);
-  EXPECT_EQ(table.entries[0].way, Way::kCells);
-  EXPECT_EQ(table.entries[1].way, Way::kPoints);
-  EXPECT_EQ(table.back[0].way, Way::kPoints);
-  const OfMatrix found = report(write("m.csv", "from,to,value\na,a,0\na,b,0.375\n"));
-  EXPECT_TRUE(found.passed());
-  EXPECT_EQ(found.by_points, 1U);
-}
-
 TEST_F(CheckMatrix, WidthsThatWereAcceptedAreTold) {
   const OfMatrix found = report(write("m.csv", "0,0.5,0.4\n0.25,0,0.5\n0.1,0.25,0\n"), {.max_abs = 0.0});
   EXPECT_TRUE(found.passed());

@@ -226,7 +226,10 @@ class SolutionFiles : public testing::Test {
  protected:
   [[nodiscard]] std::string file(const std::string& text) const { return folder_.write("s.csv", text).string(); }
   [[nodiscard]] std::string said(const Scene& scene, const std::string& text) const {
-    return complaint([&] { (void)radiosities_of(scene, read_csv(file(text))); });
+    return complaint([&] { (void)radiosities_of(scene, read_solution(file(text))); });
+  }
+  static std::string csv_of(const Scene& scene, const Solution& solution, const Origin& origin = {}) {
+    return table::csv_text(table_of(scene, solution, {}, origin));
   }
   static std::string replaced(std::string text, const std::string& from, const std::string& to) {
     const std::size_t at = text.find(from);
@@ -241,7 +244,7 @@ TEST_F(SolutionFiles, ReadBackToTheSameBits) {
   const Scene scene = plates();
   const Solution solution = solve(scene, {.factors = {.accuracy = 1e-3}});
   const Origin origin{.divided = 0.1, .two_sided = {"a,b", "c"}};
-  const SolutionFile read = read_csv(file(csv_text(scene, solution, {}, origin)));
+  const SolutionFile read = read_solution(file(csv_of(scene, solution, origin)));
   EXPECT_EQ(read.origin.divided, origin.divided);
   EXPECT_EQ(read.origin.two_sided, origin.two_sided);
   const Radiosities a = radiosities_of(solution), b = radiosities_of(scene, read);
@@ -258,16 +261,16 @@ TEST_F(SolutionFiles, ReadBackToTheSameBits) {
 TEST_F(SolutionFiles, KeepTheirClaim) {
   const Scene scene = plates();
   const Solution proved = solve(scene, {.factors = {.accuracy = 1e-2, .certify = true}});
-  const std::string text = csv_text(scene, proved, {});
-  EXPECT_EQ(read_csv(file(text)).claim, Claim::kCertified);
-  EXPECT_EQ(read_csv(file(replaced(text, ",certified,", ",estimated,"))).claim, Claim::kEstimated);
-  EXPECT_EQ(read_csv(file(replaced(text, ",certified,", ",topology-proved,"))).claim, Claim::kEstimated);
-  EXPECT_NE(said(scene, replaced(text, ",certified,", ",rubbish,")).find("unknown claim 'rubbish'"), std::string::npos);
+  const std::string text = csv_of(scene, proved);
+  EXPECT_EQ(read_solution(file(text)).claim, Claim::kCertified);
+  EXPECT_EQ(read_solution(file(replaced(text, ",certified,", ",estimated,"))).claim, Claim::kEstimated);
+  EXPECT_NE(said(scene, replaced(text, ",certified,", ",rubbish,")).find("column 'claim' has an impossible value"),
+            std::string::npos);
 }
 
 TEST_F(SolutionFiles, OfOtherScenesOrWithoutBoundsAreRefused) {
   const Scene scene = plates();
-  const std::string text = csv_text(scene, solve(scene, {.factors = {.accuracy = 1e-2}}), {});
+  const std::string text = csv_of(scene, solve(scene, {.factors = {.accuracy = 1e-2}}));
   EXPECT_EQ(said(scene, text), "");
   EXPECT_NE(said(furnace(), text).find("another scene"), std::string::npos);
   EXPECT_NE(said(divided(scene, 0.5).scene, text).find("another scene"), std::string::npos);
@@ -277,7 +280,7 @@ TEST_F(SolutionFiles, OfOtherScenesOrWithoutBoundsAreRefused) {
       said(scene, replaced(text, "ceiling,green", "roof,green")).find("of 'roof', which is no patch of the scene"),
       std::string::npos);
   EXPECT_NE(said(scene, text.substr(0, text.find("lamp,"))).find("no radiosity of 'lamp' in red"), std::string::npos);
-  EXPECT_NE(said(scene, replaced(text, "# scene hash", "# hash")).find("to which scene"), std::string::npos);
+  EXPECT_NE(said(scene, replaced(text, "\"scene_hash\"", "\"hash\"")).find("of which scene"), std::string::npos);
   EXPECT_NE(said(scene, replaced(text, "lamp,red,4", "lamp,red,5")).find("within its bounds"), std::string::npos);
   const std::size_t row = text.find("floor,blue,");
   std::string unbounded = text.substr(row, text.find('\n', row) - row);
@@ -292,7 +295,7 @@ TEST_F(SolutionFiles, WithPatchesWithoutAreaAreRefused) {
   generate::PlainScene plain = plain_plates();
   plain.add_ring(plain.patch("thread"), {{0, 0, 2}, {1, 0, 2}, {1, 0, 2}});
   const Scene scene = generate::build(plain);
-  const std::string text = csv_text(scene, solve(scene, {.factors = {.accuracy = 1e-2}}), {});
+  const std::string text = csv_of(scene, solve(scene, {.factors = {.accuracy = 1e-2}}));
   EXPECT_NE(said(scene, replaced(text, "ceiling,green", "thread,green")).find("of 'thread', which has no area"),
             std::string::npos);
 }
@@ -314,7 +317,7 @@ TEST_F(AllTheLight, OfADividedSceneComesFromItsFile) {
       run({"radiosity", scene_, "--divide", "0.5", "--two-sided", "floor", "--accuracy", "1e-2", "-o", file("s.csv")}),
       0);
   const std::string solution = validation::text_of(file("s.csv"));
-  EXPECT_NE(solution.find("\n# divided by 0.5\n# two-sided: floor\n"), std::string::npos) << solution.substr(0, 400);
+  EXPECT_NE(solution.find("\"divided\":0.5,\"two_sided\":[\"floor\"]"), std::string::npos) << solution.substr(0, 400);
   EXPECT_NE(solution.find("area,variation\n"), std::string::npos);
   EXPECT_NE(solution.find("floor:1 (back),red"), std::string::npos);
   EXPECT_EQ(run({"render", scene_, "--radiosity", file("s.csv"), "--size", "8x8", "-o", file("a.exr")}), 0);

@@ -64,9 +64,12 @@ class MatrixJobs : public testing::Test {
     part.shard = {number, count};
     return part;
   }
+  std::string text_of_table(const Matrix& matrix) const {
+    return table::csv_text(table_of(scene_, matrix, request().options.factors));
+  }
   std::string expected() const {
     const Request all = request();
-    return csv_text(scene_, compute(scene_, all.from, all.to, all.options), all.options.factors);
+    return text_of_table(compute(scene_, all.from, all.to, all.options));
   }
 
   // Ends the run when `cancelled` has been asked this often.
@@ -112,8 +115,8 @@ TEST_F(MatrixJobs, BytesAreThoseOfAMatrixWithoutAJournal) {
 TEST_F(MatrixJobs, AreReadToTheSameBits) {
   const Request asked = request();
   write(asked, file_);
-  EXPECT_TRUE(is_csv(file_));
-  EXPECT_EQ(csv_text(scene_, read(asked, file_), asked.options.factors), expected());
+  EXPECT_EQ(table::kind_of(file_), "matrix");
+  EXPECT_EQ(text_of_table(read(asked, file_)), expected());
   Request fewer = asked;
   fewer.to.pop_back();
   EXPECT_NE(complaint([&] { (void)read(fewer, file_); }).find("holds other rows or columns"), std::string::npos);
@@ -149,9 +152,9 @@ TEST_F(MatrixJobs, AJournalOfAnotherRequestIsRefused) {
   others.emplace_back(request(0.02), "accuracy 0.01");
   others.emplace_back(request(), "budget 300");
   others.back().first.options.factors.budget = 99;
-  others.emplace_back(request(), "hash of the patches");
+  others.emplace_back(request(), "patches hash");
   std::swap(others.back().first.to[0], others.back().first.to[1]);
-  others.emplace_back(request(), "(back)");
+  others.emplace_back(request(), "further (back) and (open)");
   others.back().first.options.backs = false;
   for (const auto& [asked, words] : others) {
     const std::string message = complaint([&, &other = asked] { write(other, file_, Existing::kResume); });
@@ -179,16 +182,15 @@ TEST_F(MatrixJobs, ACompleteFileIsLeftAsItIs) {
 TEST_F(MatrixJobs, ShardsAreMergedToTheBytesOfOneRun) {
   for (const std::uint64_t count : {2U, 5U}) {
     std::vector<fs::path> files = shards(count);
-    EXPECT_EQ(jobs::command_of_shard(files.front()), "matrix");
     std::ranges::reverse(files);
-    EXPECT_EQ(merge(files, file_, Existing::kReplace).rows, kPairs);
+    EXPECT_EQ(jobs::merge(files, file_, Existing::kReplace).rows, kPairs);
     EXPECT_EQ(text_of(file_), expected());
   }
 }
 
 TEST_F(MatrixJobs, WhatDoesNotBelongTogetherIsNotMerged) {
   const std::vector<fs::path> files = shards(3);
-  const auto refusal = [&](std::vector<fs::path> given) { return complaint([&] { merge(given, file_); }); };
+  const auto refusal = [&](std::vector<fs::path> given) { return complaint([&] { jobs::merge(given, file_); }); };
   EXPECT_NE(refusal({files[0], files[2]}).find("these are missing: 2"), std::string::npos);
   EXPECT_NE(refusal({files[0], files[1], files[0], files[2]}).find("is shard 1, and so is"), std::string::npos);
   const fs::path other = directory_.path() / "other.csv";
@@ -201,7 +203,7 @@ TEST_F(MatrixJobs, WhatDoesNotBelongTogetherIsNotMerged) {
   write_text(files[1], damaged);
   EXPECT_NE(refusal(files).find("is damaged"), std::string::npos);
   write(request(), directory_.path() / "whole.csv");
-  EXPECT_NE(refusal({directory_.path() / "whole.csv"}).find("is not a shard of a matrix"), std::string::npos);
+  EXPECT_NE(refusal({directory_.path() / "whole.csv"}).find("is not a shard of a table"), std::string::npos);
   EXPECT_FALSE(fs::exists(file_));
 }
 

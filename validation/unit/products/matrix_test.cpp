@@ -596,7 +596,7 @@ TEST_F(MatrixFilesOfTheCommand, HoldTheSkyAlone) {
     ASSERT_EQ(made.exit_code, 0);
     EXPECT_EQ(std::ranges::count(made.output, '\n'), 1 + static_cast<int>(more.size()));
     EXPECT_NE(made.output.find("plate\t(open)\t1\t1\tcertified"), std::string::npos) << made.output;
-    const Table read = read_csv(file("m.csv"));
+    const NamedMatrix read = read_named(file("m.csv"));
     EXPECT_EQ(read.to.size(), 0U);
     EXPECT_EQ(read.open.size(), 1U);
     EXPECT_EQ(read.back.size(), more.size());
@@ -707,7 +707,7 @@ TEST_F(MatrixFilesOfTheCommand, TellsWhyEntriesAreWider) {
                 "--divide, or take estimates instead of --certify\n"),
       std::string::npos)
       << told;
-  for (const ViewFactor& f : read_csv(file("m.csv")).entries) EXPECT_EQ(f.limit, Limit::kBudget);
+  for (const ViewFactor& f : read_named(file("m.csv")).entries) EXPECT_EQ(f.limit, Limit::kBudget);
   EXPECT_EQ(command({"floor", "--accuracy", "0.1"}), 0);
   EXPECT_EQ(told, "");
 }

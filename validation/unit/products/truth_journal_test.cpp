@@ -64,7 +64,7 @@ std::string small_journal(const Rows& rows, const fs::path& file) {
   Rows::Results results;
   for (const Range range : {Range{5, 2}, Range{0, 1}, Range{3, 2}, Range{1, 1}}) {
     std::string lines;
-    for (std::uint64_t row = range.first; row < range.end(); ++row) rows.append(row, lines, results);
+    for (std::uint64_t row = range.first; row < range.end(); ++row) append(rows, row, lines, results);
     journal.append(range, lines);
   }
   return text_of(journal.path());
@@ -111,7 +111,7 @@ TEST_F(Truth, BlocksThatDoNotBelongAreLeftOut) {
   const Rows rows(shard(10, 2, 3));
   std::string line;
   Rows::Results results;
-  rows.append(64, line, results);
+  append(rows, 64, line, results);
   write_text(file_, "");
   {
     RowJournal journal(file_, rows, Existing::kResume, {});
@@ -154,23 +154,10 @@ TEST_F(Truth, ACompleteFileIsLeftAsItIs) {
   EXPECT_EQ(fs::last_write_time(file_), written);
   EXPECT_EQ(again.resumed, first.rows);
   EXPECT_EQ(again.rows_by_status, first.rows_by_status);
-  EXPECT_NE(refusal(request(4), Existing::kResume).find("truth.csv:3: belongs to a different request"),
+  EXPECT_NE(refusal(request(4), Existing::kResume).find("truth.csv:1: belongs to a different request"),
             std::string::npos);
   write_text(file_, text_of(file_).substr(0, fs::file_size(file_) - 5));
   EXPECT_NE(refusal(request(3), Existing::kResume).find("truth.csv: is damaged: 17 of 18 rows can be read"),
-            std::string::npos)
-      << refusal(request(3), Existing::kResume);
-}
-
-TEST_F(Truth, AFileWithTheOldNamesOfCellsIsRefusedByName) {
-  Request old = request(3);
-  for (Receiver& receiver : old.receivers) {
-    receiver.id = std::to_string(receiver.cell->column) + ',' + std::to_string(receiver.cell->row);
-  }
-  (void)write(old, file_);
-  EXPECT_NE(refusal(request(3), Existing::kResume)
-                .find("the file may be of an older version, which named the cell r7c12 of a grid '12,7'; such a file "
-                      "cannot be continued or merged"),
             std::string::npos)
       << refusal(request(3), Existing::kResume);
 }
@@ -179,9 +166,9 @@ TEST_F(Truth, AForeignFileIsNoJournal) {
   for (const char* text : {"dear diary\n", "# exactff 0.0.1 truth\nreceiver\n", "\n", "#"}) {
     write_text(journal_, text);
     if (std::string(text) == "#") continue;  // may be the beginning of our journal
-    EXPECT_NE(
-        refusal(request(2), Existing::kResume).find("truth.csv.part:1: belongs to a different request: it says '"),
-        std::string::npos);
+    EXPECT_NE(refusal(request(2), Existing::kResume)
+                  .find("truth.csv.part:1: belongs to a different request: it has no head of this version"),
+              std::string::npos);
     EXPECT_EQ(text_of(journal_), text);
   }
 }
@@ -190,21 +177,19 @@ TEST_F(Truth, AForeignFileIsNoJournal) {
 TEST_F(Truth, AJournalOfAnotherRequestIsNamedWithItsDifference) {
   Scene other = scene_.with_flipped(scene_.select("board"));
   const std::pair<std::string, std::function<void(Request&)>> table[] = {
-      {"'# scene: room.obj, hash ",
+      {"it has scene hash ",
        [&](Request& r) {
          r.scene = &other;
          r.sources = {other.select("light"), other.select("lamp")};
        }},
-      {"this request says '# scene: hall.obj, ", [](Request& r) { r.scene_name = "hall.obj"; }},
-      {"this request says '# receivers: floor, grid, hash ", [](Request& r) { r.receivers[0].point.x += 0.5; }},
-      {"this request says '# receivers: other, hash ", [](Request& r) { r.receivers_name = "other"; }},
-      {"this request says '# sources: lamp + light'", [](Request& r) { std::swap(r.sources[0], r.sources[1]); }},
-      {"this request says 'receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,unoccluded,",
-       [](Request& r) { r.unoccluded = true; }},
-      {"this request says 'receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,visible_fraction,",
+      {"this request has scene hall.obj", [](Request& r) { r.scene_name = "hall.obj"; }},
+      {"this request has receivers hash ", [](Request& r) { r.receivers[0].point.x += 0.5; }},
+      {"this request has receivers other", [](Request& r) { r.receivers_name = "other"; }},
+      {"this request has sources lamp and light", [](Request& r) { std::swap(r.sources[0], r.sources[1]); }},
+      {"it has column radiosity_r, and this request has column unoccluded", [](Request& r) { r.unoccluded = true; }},
+      {"it has column radiosity_r, and this request has column visible_fraction",
        [](Request& r) { r.visible_fraction = true; }},
-      {"this request says '# shard: 1/2 in chunks of 64 rows, for exactff merge'",
-       [](Request& r) { r.shard.count = 2; }},
+      {"it has shards 1, and this request has shards 2", [](Request& r) { r.shard.count = 2; }},
   };
   interrupt(request(10), 100);
   const std::string journal = text_of(journal_);
@@ -219,7 +204,7 @@ TEST_F(Truth, AJournalOfAnotherRequestIsNamedWithItsDifference) {
   std::string old_version = journal;
   old_version.replace(old_version.find(kVersion), std::string(kVersion).size(), "0.0.9");
   write_text(journal_, old_version);
-  EXPECT_NE(refusal(request(10), Existing::kResume).find("it says '# exactff 0.0.9 truth"), std::string::npos);
+  EXPECT_NE(refusal(request(10), Existing::kResume).find("it has another version of exactff"), std::string::npos);
 }
 
 TEST_F(Truth, TwoProcessesCannotShareAJournal) {

@@ -73,7 +73,7 @@ class TruthShards : public Truth {
     return parts;
   }
   std::string merge_refusal(const std::vector<fs::path>& parts) const {
-    return complaint([&] { merge(parts, directory_.path() / "merged.csv"); });
+    return complaint([&] { truth::merge(parts, directory_.path() / "merged.csv"); });
   }
 };
 
@@ -83,7 +83,7 @@ TEST_F(TruthShards, MergedAreTheBytesOfOneRun) {
     std::vector<fs::path> parts = write_shards(10, count);
     std::reverse(parts.begin(), parts.end());
     const fs::path merged = directory_.path() / "merged.csv";
-    const Summary summary = merge(parts, merged, Existing::kReplace);
+    const Summary summary = truth::merge(parts, merged, Existing::kReplace);
     EXPECT_EQ(text_of(merged), text_of(file_));
     EXPECT_EQ(summary.rows_by_status, one.rows_by_status);
   }
@@ -117,12 +117,11 @@ TEST_F(TruthShards, WhatDoesNotBelongTogetherIsRefused) {
   expect({parts[0], parts[1], parts[2], parts[1]}, "is shard 2, and so is ");
   expect({parts[0], directory_.path() / "nothing"}, "nothing: cannot be read: No such file");
   write(request(10), file_);
-  expect({parts[0], parts[1], file_}, "truth.csv: is not a shard of a truth file");
+  expect({parts[0], parts[1], file_}, "truth.csv: is not a shard of a table");
   write(shard(10, 3, 4), file_, Existing::kReplace);
   expect({parts[0], parts[1], file_}, "is one of 4 shards");
   write(shard(9, 3, 3), file_, Existing::kReplace);
-  expect({parts[0], parts[1], file_},
-         "truth.csv:3: belongs to a different request: it says '# receivers: floor, grid, hash ");
+  expect({parts[0], parts[1], file_}, "truth.csv:1: belongs to a different request: it has receivers hash ");
 }
 
 TEST_F(TruthShards, DamageIsFoundWhereverItIs) {

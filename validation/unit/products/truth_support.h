@@ -35,6 +35,12 @@ inline Scene room() {
   return read_obj(obj, "room.obj");
 }
 
+// The line of a row.
+inline void append(const Rows& rows, std::uint64_t row, std::string& text, Rows::Results& results) {
+  rows.compute(row, results);
+  rows.columns().append_csv(results.row, text);
+}
+
 class Truth : public testing::Test {
  protected:
   // 2 x n x n rows.
