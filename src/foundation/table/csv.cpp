@@ -177,16 +177,18 @@ Vec3 CsvReader::vector(const std::array<std::size_t, 3>& columns) {
 
 Cell CsvReader::cell(std::size_t column, Type type) {
   Cell cell;
-  if (parse_cell(fields_[column], type, cell)) return cell;
+  // A spreadsheet that writes semicolons may also write decimal commas.
+  const bool is_of_spreadsheet = dialect_.has_semicolons() && type == Type::kNumber && !fields_[column].empty();
+  if (!is_of_spreadsheet && parse_cell(fields_[column], type, cell)) return cell;
   if (type == Type::kNumber) {
-    (void)number(column, NotFinite::kAccept);  // complains
+    cell = number(column, NotFinite::kAccept);  // or complains
   } else {
     complain(text::in_quotes(fields_[column]) + " in column " + text::in_quotes(names_[column]) + " is no " +
                  std::string(to_string(type)),
              type == Type::kFlag ? "a flag is yes or no" : "a count is a whole number",
              "use the file as exactff wrote it");
   }
-  return {};
+  return cell;
 }
 
 bool parse_cell(const std::string& field, Type type, Cell& cell) {
