@@ -1,19 +1,16 @@
-#include "experiments/karkanis_times.h"
-
+// Karkanis' timings (experiments.h).
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "exactff/exact.h"
+#include "experiments/experiments.h"
 #include "files/parallel.h"
-#include "page/figure.h"
 #include "text/phrases.h"
 
 namespace exactff::experiments {
-
 namespace {
 
-using page::Axes;
-using page::Series;
 using text::counted;
 using text::duration;
 using text::rounded;
@@ -27,6 +24,22 @@ constexpr std::array<HisTime, 4> kHis = {{{50, 0.2}, {100, 2.8}, {200, 300.0}, {
 constexpr std::string_view kKarkanisStage = "karkanis-times";
 
 // ------------------------------------------------------------------------------------------------------- measurements
+
+// Seconds for all patches.
+struct TimeRow {
+  int triangles = 0;
+  double with_shaft = 0.0;
+  std::optional<double> without_shaft = {};
+  double hemicube = 0.0;
+  double rays = 0.0;
+};
+
+std::vector<ExactSource> exact_sources(const Scene& scene, std::span<const Selection> sources) {
+  std::vector<ExactSource> exact;
+  exact.reserve(sources.size());
+  for (const Selection& source : sources) exact.emplace_back(scene, source);
+  return exact;
+}
 
 std::vector<FormFactor> all_patches(const KarkanisScene& scene, const std::vector<ExactSource>& sources,
                                     ShaftCulling culling, const Hooks& hooks) {

@@ -1,5 +1,4 @@
-#include "experiments/meshing.h"
-
+// One radiosity for each cell (experiments.h).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,16 +7,14 @@
 
 #include "exactff/matrix.h"
 #include "exactff/radiosity.h"
+#include "experiments/experiments.h"
 #include "files/parallel.h"
 #include "kernel/statistics.h"
 #include "text/phrases.h"
 
 namespace exactff::experiments {
-
 namespace {
 
-using page::Axes;
-using page::Series;
 using text::counted;
 using text::rounded;
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "experiments/experiment.h"
+#include "experiments/experiments.h"
 #include "files/parallel.h"
 #include "kernel/float_environment.h"
 #include "page/chapter.h"
