@@ -7,7 +7,6 @@
 
 #include "exactff/models.h"
 #include "files/stopwatch.h"
-#include "study/statistics.h"
 #include "text/nearest_names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -16,12 +15,10 @@ namespace exactff::experiments {
 namespace {
 
 // In the order of the report.
-constexpr Experiment kExperiments[] = {
-    {"hemicube-scatter", "Karkanis' two plots: hemicube against exact values, triangle by triangle", &hemicube_scatter},
-    {"karkanis-times", "time for all patches from one point against their number, compared with Karkanis' times",
-     &karkanis_times},
-    {"meshing", "the Cornell box after all bounces: error against the size of cells, down to 1/8 of the box", &meshing},
-    {"meshing-fine", "the same down to 1/16: a quarter of an hour", &fine_meshing, true}};
+constexpr Experiment kExperiments[] = {{"hemicube-scatter", &hemicube_scatter},
+                                       {"karkanis-times", &karkanis_times},
+                                       {"meshing", &meshing},
+                                       {"meshing-fine", &fine_meshing, true}};
 
 }  // namespace
 
@@ -45,19 +42,6 @@ KarkanisScene karkanis_scene(int triangles, std::uint64_t seed) {
   for (const FaceId face : scene.faces_of(all)) sources.push_back({all.patch, face});
   return {std::move(scene), {.point = {0, 0, 0}, .normal = {0, 0, 1}, .on = {}, .id = {}}, std::move(sources)};
 }
-
-Bench::Bench(const methods::Choice& choice, const Scene& scene, std::span<const Selection> sources)
-    : prepared_(*choice.method, scene, sources),
-      evaluator_(prepared_.scene->configure(choice.settings)),
-      estimates_(sources.size()) {}
-
-std::span<const methods::Estimate> Bench::look_from(const Receiver& receiver) {
-  evaluator_->look_from(receiver);
-  evaluator_->form_factors(prepared_.sources, estimates_);
-  return estimates_;
-}
-
-double root_mean_square(std::span<const double> errors) { return study::error_statistics(errors).rms; }
 
 double median_seconds(const std::function<void()>& call, std::size_t repeats) {
   constexpr double kLong = 1.0;

@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -21,7 +20,7 @@
 #include "exactff/study.h"
 #include "page/chapter.h"
 #include "page/plot_script.h"
-#include "study/prepared_method.h"
+#include "study/settings.h"
 #include "text/csv_row.h"
 
 namespace exactff::experiments {
@@ -34,13 +33,12 @@ using page::Series;
 using Result = page::Chapter;
 
 struct Effort {
-  bool abridged = false;  // some seconds each, for a first look; otherwise at most minutes
-  int threads = 1;        // for values; times are always measured with one thread
+  bool abridged = false;  // a first look: coarser grids, fewer settings and receivers, experiments of some seconds
+  int threads = 0;        // 0: as many as this process may use; values do not depend on it, times are those of one
 };
 
 struct Experiment {
-  std::string_view name;     // letters, digits and hyphens
-  std::string_view summary;  // one line
+  std::string_view name;  // letters, digits and hyphens
   Result (*run)(const Effort&, const Hooks&) = nullptr;
   bool by_name_only = false;  // "all" leaves it out: it takes long
 };
@@ -64,17 +62,15 @@ struct KarkanisScene {
 // A method prepared for a scene and its sources. For one thread at a time.
 class Bench {
  public:
-  Bench(const methods::Choice& choice, const Scene& scene, std::span<const Selection> sources);
+  Bench(const methods::Choice& choice, const Scene& scene, std::span<const Selection> sources)
+      : prepared_(*choice.method, scene, sources), setting_(prepared_, choice.settings) {}
   // The values of all sources, in their order.
-  [[nodiscard]] std::span<const methods::Estimate> look_from(const Receiver& receiver);
+  std::span<const methods::Estimate> look_from(const Receiver& receiver) { return setting_.look_from(receiver); }
 
  private:
   study::PreparedMethod prepared_;
-  std::unique_ptr<methods::Evaluator> evaluator_;
-  std::vector<methods::Estimate> estimates_;
+  study::ReadySetting setting_;
 };
-
-[[nodiscard]] double root_mean_square(std::span<const double> errors);
 
 // The time of one call in seconds, on a steady clock: the median of up to `repeats` calls after a warm-up call, as long
 // as they take less than a second together. If the first call takes longer than that, its time is the result.
@@ -156,9 +152,6 @@ struct TimesSize {
   double budget = 20.0;          // seconds; a measurement without the shaft that would take longer is left out
   int rays = 10'000;             // to each patch
   std::size_t ray_patches = 16;  // timed patches, extrapolated to all
-  std::vector<int> affordable = {1,   4,    16,  64,
-                                 256, 1024, 4096};  // rays to each patch, to find how many take as long as exact
-  int affordable_at = 200;                          // triangles
 };
 
 // Results that are the same on every run.

@@ -1,6 +1,7 @@
 // Karkanis' two plots (experiments.h).
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 
@@ -261,13 +262,15 @@ std::vector<double> scatter_slopes(std::span<const ScatterPoint> points, const S
 
 Result hemicube_scatter(const ScatterSize& size, int threads, const Hooks& hooks) {
   const std::vector<ScatterPoint> points = scatter_points(size, threads, hooks);
-  Result result{.name = "hemicube-scatter", .title = "Karkanis' two plots: hemicube against exact"};
-  result.paragraphs = {scene_sentence(points, size), missed_sentence(points, size), trend_sentence(points, size)};
-  std::erase(result.paragraphs, "");
-  result.tables = {missed_table(points, size), decades_of(scatter_decades(points, 0))};
-  result.figures = {value_figure(points, size.resolutions.front()), error_figure(points, size)};
-  result.values = {point_table(points, size), decade_table(points, size)};
-  return result;
+  std::vector<std::string> paragraphs{scene_sentence(points, size), missed_sentence(points, size),
+                                      trend_sentence(points, size)};
+  std::erase(paragraphs, "");
+  return {.name = "hemicube-scatter",
+          .title = "Karkanis' two plots: hemicube against exact",
+          .paragraphs = std::move(paragraphs),
+          .tables = {missed_table(points, size), decades_of(scatter_decades(points, 0))},
+          .figures = {value_figure(points, size.resolutions.front()), error_figure(points, size)},
+          .values = {point_table(points, size), decade_table(points, size)}};
 }
 
 Result hemicube_scatter(const Effort& effort, const Hooks& hooks) {

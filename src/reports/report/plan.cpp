@@ -3,14 +3,19 @@
 
 #include <algorithm>
 #include <cctype>
+#include <fstream>
+#include <iterator>
+#include <type_traits>
 
-#include "experiments/experiments.h"
+#include "exactff/version.h"
+#include "files/file.h"
 #include "files/parallel.h"
 #include "kernel/float_environment.h"
 #include "page/chapter.h"
-#include "report/identity.h"
+#include "page/output_folder.h"
 #include "report/report.h"
 #include "report/verdicts.h"
+#include "text/fnv1a.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
@@ -72,6 +77,61 @@ Outcome outcome_of(const StudyReport& report) {
   return outcome;
 }
 
+// Everything that the values and the words of a report depend on; not threads or the engine.
+class Identity {
+ public:
+  template <class... Parts>
+  void add(const Parts&... parts) {
+    (add_one(parts), ...);
+  }
+  [[nodiscard]] std::string digits() const { return hash_.digits(); }
+
+ private:
+  void add_one(const std::string& text) {
+    hash_.add(std::uint64_t{text.size()});
+    hash_.add_bytes(text);
+  }
+  void add_one(double number) { hash_.add(number); }
+  template <class Number>
+  requires std::is_integral_v<Number> || std::is_enum_v<Number>
+  void add_one(Number number) { hash_.add(static_cast<std::uint64_t>(number)); }
+  template <class Item>
+  void add_one(const std::vector<Item>& list) {
+    add(list.size());
+    for (const Item& item : list) add(item);
+  }
+  template <class Value>
+  void add_one(const std::optional<Value>& value) {
+    add(value.has_value());
+    if (value) add(*value);
+  }
+  void add_one(const Vec3& v) { hash_.add(v); }
+  void add_one(const LeftOut& item) { add(item.what, item.why); }
+  void add_one(const Receiver& r) { add(r.point, r.normal, r.on, r.id); }
+  void add_one(const methods::Choice& choice) { add(choice.text()); }
+  void add_one(const study::Ladder& ladder) { add(ladder.name, ladder.along, ladder.rungs); }
+  void add_one(const render::Camera& camera) { add(camera.eye, camera.look, camera.up, camera.fov); }
+  void add_one(const study::Sweeps& s) { add(s.enabled, s.eps_b, s.eps_a, s.rays, s.seeds, s.patterns, s.variants); }
+  void add_one(const study::MethodSweep& m) { add(m.enabled, m.ladders, m.seeds, m.receivers, m.budget); }
+  void add_one(const PlannedScene& scene) {
+    const study::Request& request = scene.request;
+    add(scene.name, scene.title, scene.scene->hash(), request.scene_name, request.receivers_name, request.receivers);
+    for (const Selection& source : request.sources) add(scene.scene->name_of(source));
+    add(request.sweeps, request.methods, request.sweep_budget, request.seconds_for_a_time, request.camera, request.up);
+  }
+
+  text::Fnv1a hash_;
+};
+
+// The line of the page that says what was asked for: a finished folder of the same request need not be computed again.
+std::string identity_line(const Plan& plan) {
+  Identity identity;
+  identity.add(std::string(kVersion), plan.title, plan.scenes, plan.experiments, plan.left_out, plan.effort.abridged);
+  return "<!-- request " + identity.digits() + " -->";
+}
+
+std::filesystem::path page_in(const std::filesystem::path& folder) { return folder / page::kReportFile; }
+
 }  // namespace
 
 std::vector<std::string> experiment_names() {
@@ -118,7 +178,7 @@ Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::J
   StudyReport report;
   report.title = plan.title;
   report.command_line = plan.command_line;
-  report.identity = identity_of(plan);
+  report.identity = identity_line(plan);
   report.left_out = plan.left_out;
   for (const PlannedScene& scene : plan.scenes) {
     report.scenes.push_back({scene.name, scene.title, study::run(scene.request, with_title(scene, hooks), &journal)});
@@ -130,6 +190,18 @@ Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::J
   Outcome outcome = outcome_of(report);
   std::ranges::move(write(report, folder, hooks), std::back_inserter(outcome.notes));
   return outcome;
+}
+
+bool has_report(const std::filesystem::path& folder) { return files::is_there(page_in(folder)); }
+
+Finished finished_report(const Plan& plan, const std::filesystem::path& folder) {
+  if (!has_report(folder)) return Finished::kNone;
+  const std::string wanted = identity_line(plan);
+  std::ifstream page(page_in(folder), std::ios::binary);
+  for (std::string line; std::getline(page, line);) {
+    if (line == wanted) return Finished::kOfThis;
+  }
+  return Finished::kOfAnother;
 }
 
 }  // namespace exactff::report

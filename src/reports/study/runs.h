@@ -1,13 +1,41 @@
-// Runs the settings of a study: those of the sweeps at every receiver, and all of them at the chosen receivers.
+// Plans and runs the settings of a study: those of the sweeps at every receiver, and all of them at the chosen
+// receivers. What a setting is planned to cost follows from counted work at fixed prices: no plan depends on a clock.
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "exactff/study.h"
 #include "jobs/kept_work.h"
-#include "study/prepared_method.h"
+#include "study/settings.h"
 
 namespace exactff::study {
+
+// Seconds of one evaluation with this work.
+[[nodiscard]] double planned_seconds(const methods::Counters& counters, std::size_t faces);
+// Finds the planned seconds of evaluations by doing them.
+class Estimator {
+ public:
+  // A recursion is stopped when it has certainly exceeded `most_seconds`.
+  Estimator(const methods::Choice& choice, const PreparedMethod& prepared, double most_seconds);
+  // For all sources.
+  [[nodiscard]] double seconds_at(const Receiver& receiver);
+
+ private:
+  std::size_t faces_;  // of the scene
+  ReadySetting setting_;
+};
+
+// The settings of the sweeps to leave out: those with the most planned work, but not the base, until the rest fits into
+// Request::sweep_budget. In order of decreasing work. Requires exact values and settings. Throws InputError if even the
+// base would take far too long.
+[[nodiscard]] std::vector<std::size_t> over_budget(const Study& study, const PreparedMethod& adaptive);
+
+// Chooses the receivers of MethodStudy, and plans its ladders, cells and fields. Every rung is evaluated once. A ladder
+// ends before the rung that would take more than what is left of MethodSweep::budget. A setting of the sweeps is run
+// all the same, with fewer seeds, but never on one or two alone; on a ladder of such settings every rung gets an equal
+// share of what is left.
+void plan_runs(Study& study, std::vector<Ladder> ladders, PreparedMethods& methods);
 
 // Fills in Study::judged, samples, and the values, statistics and slopes of methods. `study` must have its exact
 // values, and the settings and cells that plan_runs() leaves.

@@ -162,8 +162,6 @@ TEST(KarkanisTimes, NamesWhatTheBudgetLeavesOut) {
   TimesSize size{.triangles = {10, 20, 40}};
   size.budget = 0.0;
   size.rays = 4;
-  size.affordable = {1};
-  size.affordable_at = 20;
   const Result result = karkanis_times(size, kNoHooks);
   ASSERT_EQ(result.left_out.size(), 1U);
   EXPECT_NE(result.left_out[0].what.find("20 and 40"), std::string::npos) << result.left_out[0].what;

@@ -10,8 +10,7 @@
 #include <vector>
 
 #include "exactff/study.h"
-#include "study/budget.h"
-#include "study/ladders.h"
+#include "study/runs.h"
 #include "study/settings.h"
 #include "study/sight.h"
 #include "study/timing.h"
