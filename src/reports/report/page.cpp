@@ -398,12 +398,6 @@ class PageWriter {
     });
   }
 
-  void overview() {
-    text_ += "<section id=\"overview\">\n" + page::heading("Which method for which error");
-    recommendations();
-    text_ += "</section>\n";
-  }
-
   void left_out() {
     if (report_.left_out.empty()) return;
     text_ += "<section id=\"left-out\">\n" + page::heading("What this report leaves out, and why") +
@@ -411,7 +405,8 @@ class PageWriter {
   }
 
   // One row per scene: the cheapest method for every wanted error, the exact method included.
-  void recommendations() {
+  void overview() {
+    text_ += "<section id=\"overview\">\n" + page::heading("Which method for which error");
     text_ += page::paragraph(
         "For each scene and error: the fastest method and setting that is accurate to this error, and its time per "
         "receiver. The error is the RMS error over the chosen receivers and seeds, divided by the radiosity of the "
@@ -433,18 +428,13 @@ class PageWriter {
             kText);
       }
     }
-    text_ += table.text() + '\n';
+    text_ += table.text() + "\n</section>\n";
   }
 
+  // Of an experiment: a sentence, a figure or two, then the findings and further figures, folded.
   void chapter(const page::Chapter& chapter, const Page& page) {
     text_ +=
         "<section class=\"scene\" id=\"chapter-" + chapter.name + "\">\n<h2>" + text::html(chapter.title) + "</h2>\n";
-    experiment_part(chapter, page);
-    text_ += "</section>\n";
-  }
-
-  // A sentence, a figure or two, then the findings and further figures, folded.
-  void experiment_part(const page::Chapter& chapter, const Page& page) {
     if (!chapter.paragraphs.empty()) {
       const std::string opening = opening_sentence(chapter.paragraphs.front());
       text_ += "<p class=\"verdict\">" + page::prose(text::html(opening)) + "</p>\n";
@@ -463,6 +453,7 @@ class PageWriter {
     text_ += page::fold("What was done and found", findings);
     text_ += page::fold("Further figures", figure_group(page.drawn, std::not_fn(is_shown)));
     if (!page.left_out.empty()) text_ += page::fold("What was left out, and why", left_out_list(page.left_out));
+    text_ += "</section>\n";
   }
 
   static std::string number_table(const page::NumberTable& numbers) {

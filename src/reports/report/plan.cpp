@@ -1,4 +1,4 @@
-// What a report covers, and how it is carried out.
+// What a report covers, how it is carried out, and how it is written into a folder.
 #include "report/plan.h"
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include "page/output_folder.h"
 #include "report/report.h"
 #include "report/verdicts.h"
+#include "text/escape.h"
 #include "text/fnv1a.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -132,6 +133,24 @@ std::string identity_line(const Plan& plan) {
 
 std::filesystem::path page_in(const std::filesystem::path& folder) { return folder / page::kReportFile; }
 
+void write_tables(const SceneChapter& scene, const std::filesystem::path& folder, const Hooks& hooks) {
+  for (const StudyTable& table : tables()) {
+    if (!table.has_rows(scene.study)) continue;
+    files::require_not_cancelled(hooks);
+    files::write_file(folder / file_name(scene, table), [&](std::ostream& out) { table.write(scene.study, out); });
+  }
+}
+
+void write_tables(const page::Chapter& chapter, const std::filesystem::path& folder) {
+  for (const auto* list : {&chapter.values, &chapter.times}) {
+    for (const page::CsvFile& table : *list) {
+      files::write_file(folder / table.file, [&](std::ostream& out) {
+        out << "# " << text::program_version() << " compare: " << text::csv_comment(table.holds) << '\n' << table.csv;
+      });
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> experiment_names() {
@@ -160,6 +179,39 @@ void Plan::add_experiments(const std::vector<std::string>& names) {
       add(std::string(experiments::experiment_named(name).name));
     }
   }
+}
+
+std::vector<std::string> write(const StudyReport& report, const std::filesystem::path& folder, const Hooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
+  page::StagedFolder staged(folder);
+  std::vector<std::string> messages;
+  std::string without_gnuplot;  // why there are no figures, once that is known
+  const auto draw = [&](std::vector<page::Figure> figures, std::vector<LeftOut> left_out, const std::string& prefix) {
+    for (page::Figure& figure : figures) figure.id = prefix.empty() ? figure.id : prefix + '-' + figure.id;
+    page::DrawnFigures drawn;
+    drawn.none = without_gnuplot;
+    if (drawn.none.empty()) drawn = page::draw_figures(std::move(figures), staged.path(), messages, hooks);
+    without_gnuplot = drawn.none;
+    std::ranges::move(drawn.left_out, std::back_inserter(left_out));
+    return Page{std::move(drawn), std::move(left_out)};
+  };
+  Pages pages;
+  for (const SceneChapter& scene : report.scenes) {
+    write_tables(scene, staged.path(), hooks);
+    std::vector<LeftOut> left_out = scene.study.left_out;
+    std::vector<page::Figure> wanted = figures(scene.study, left_out);
+    std::optional<Strip> strip = strip_of(scene.study, left_out, hooks);
+    pages.scenes.push_back(draw(std::move(wanted), std::move(left_out), scene.name));
+    pages.scenes.back().strip = std::move(strip);
+  }
+  for (const page::Chapter& chapter : report.chapters) {
+    write_tables(chapter, staged.path());
+    pages.chapters.push_back(draw(chapter.figures, chapter.left_out, chapter.name));
+  }
+  files::write_file(staged.path() / page::kReportFile, [&](std::ostream& out) { out << report_page(report, pages); });
+  files::require_not_cancelled(hooks);
+  staged.commit();
+  return messages;
 }
 
 Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::Journal& journal, const Hooks& hooks) {
@@ -205,3 +257,14 @@ Finished finished_report(const Plan& plan, const std::filesystem::path& folder) 
 }
 
 }  // namespace exactff::report
+
+namespace exactff::study {
+
+std::vector<std::string> write_report(const Study& study, const std::filesystem::path& folder, const Hooks& hooks) {
+  report::StudyReport report;
+  report.scenes.push_back({"", study.request.scene_name, study});
+  report.command_line = study.request.command_line;
+  return write(report, folder, hooks);
+}
+
+}  // namespace exactff::study

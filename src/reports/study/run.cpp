@@ -23,7 +23,6 @@
 #include "study/settings.h"
 #include "study/sight.h"
 #include "study/statistics.h"
-#include "study/timing.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 

@@ -9,8 +9,6 @@
 // microseconds, so short calls are measured on the steady clock: they are seldom interrupted, and a median leaves out
 // those that are. They follow a first call with the same arguments, and very short ones are repeated. Long calls need
 // no such warming up.
-#include "study/timing.h"
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -20,7 +18,7 @@
 #include "files/parallel.h"
 #include "files/stopwatch.h"
 #include "kernel/statistics.h"
-#include "study/settings.h"
+#include "study/runs.h"
 
 namespace exactff::study {
 namespace {

@@ -13,7 +13,6 @@
 #include "study/runs.h"
 #include "study/settings.h"
 #include "study/sight.h"
-#include "study/timing.h"
 #include "support/complaint.h"
 #include "unit/reports/study_support.h"
 
