@@ -143,8 +143,7 @@ struct ErrorStatistics {
 struct Summary {
   ErrorStatistics form_factor;
   ErrorStatistics radiosity;
-  ErrorStatistics radiosity_partly;  // over the receivers that see the source partly
-  std::size_t violations = 0;        // receivers with |radiosity error| > eps_B or NaN
+  std::size_t violations = 0;  // receivers with |radiosity error| > eps_B or NaN
   std::uint64_t leaves = 0;
   std::uint64_t rays = 0;
   std::uint64_t silent_leaves = 0;

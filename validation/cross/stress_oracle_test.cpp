@@ -1,7 +1,7 @@
 // The oracle checks every stiff scene that has few enough faces for it, also where no closed form exists.
 #include <gtest/gtest.h>
 
-#include "stress/family.h"
+#include "stress/families.h"
 #include "support/decimal.h"
 #include "support/oracle.h"
 

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "page/page_text.h"
-#include "report/scene_part.h"
+#include "report/report.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 

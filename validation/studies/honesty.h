@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "exactff/view_factors.h"
-#include "experiments/support.h"
+#include "experiments/experiments.h"
 
 namespace exactff::experiments {
 

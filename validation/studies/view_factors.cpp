@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kernel/vec.h"
+#include "studies/small_scene.h"
 #include "text/phrases.h"
 
 namespace exactff::experiments {

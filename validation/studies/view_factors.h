@@ -7,7 +7,7 @@
 
 #include "exactff/matrix.h"
 #include "exactff/view_factors.h"
-#include "experiments/support.h"
+#include "experiments/experiments.h"
 
 namespace exactff::experiments {
 

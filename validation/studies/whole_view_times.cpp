@@ -6,9 +6,9 @@
 
 #include "exactff/models.h"
 #include "exactff/view.h"
-#include "experiments/karkanis_times.h"
 #include "files/parallel.h"
 #include "models/random.h"
+#include "studies/small_scene.h"
 #include "text/phrases.h"
 
 namespace exactff::experiments {

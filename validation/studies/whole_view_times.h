@@ -4,7 +4,7 @@
 // forest and a closed room from points on their floors. Each time is that of one whole view.
 #pragma once
 
-#include "experiments/support.h"
+#include "experiments/experiments.h"
 
 namespace exactff::experiments {
 

@@ -1,8 +1,8 @@
 #include "flags/comparison.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
-#include <initializer_list>
 #include <optional>
 #include <utility>
 
@@ -70,15 +70,38 @@ Variant to_variant(const std::string& text, const std::string& flag) {
                "use mended or literal");
 }
 
-// The flags of the list that were given.
-using GivenFlag = std::pair<const char*, const std::string*>;
-std::vector<std::string> given_flags(std::initializer_list<GivenFlag> flags) {
-  std::vector<std::string> given;
-  for (const auto& [flag, value] : flags) {
-    if (!value->empty()) given.emplace_back(flag);
-  }
-  return given;
-}
+// A flag whose text is kept as it was given.
+struct TextFlag {
+  const char* name;
+  std::string ComparisonArguments::*text;
+  const char* type;
+  const char* help;
+};
+using Arguments = ComparisonArguments;
+
+// Of the sweep.
+constexpr std::array<TextFlag, 6> kLists = {
+    {{"--eps-b", &Arguments::eps_b, "LIST",
+      "Values of eps_B, the tolerance of the adaptive algorithm: a radiosity for each leaf (default: max(rho B) times "
+      "1e-1,...,1e-5)"},
+     {"--eps-a", &Arguments::eps_a, "LIST",
+      "Values of eps_A, the area below which nothing is split (default: 0 and the mean area of a source face times "
+      "1e-1,...,1e-4)"},
+     {"--rays", &Arguments::rays, "LIST", "Numbers of shadow rays per undecided leaf (default: 1,4,16,64,256)"},
+     {"--seeds", &Arguments::seeds, "LIST", "Seeds of the shadow rays (default: 1,...,10)"},
+     {"--pattern", &Arguments::pattern, "LIST",
+      "Where rays end: jittered, centre, regular, low-discrepancy (default: all)"},
+     {"--variant", &Arguments::variant, "LIST",
+      "literal: the algorithm as printed in 1992; mended: with its faults corrected (default: both)"}}};
+constexpr std::array<TextFlag, 4> kLimits = {
+    {{"--method-seeds", &Arguments::method_seeds, "N", "Run stochastic methods with seeds 1 to N (default: 30)"},
+     {"--method-receivers", &Arguments::method_receivers, "N",
+      "Number of receivers at which methods are compared (default: 48)"},
+     {"--method-budget", &Arguments::method_budget, "SECONDS",
+      "Time limit for each method on a scene. The time is estimated from counted work at fixed prices, so that the "
+      "settings that run do not depend on the machine (default: 2)"},
+     {"--sweep-budget", &Arguments::sweep_budget, "SECONDS",
+      "The same limit for all settings of the adaptive algorithm together (default: 25)"}}};
 
 void refuse_idle(const std::vector<std::string>& flags, const std::string& beside, const std::string& why,
                  const std::string& suggestion) {
@@ -89,17 +112,15 @@ void refuse_idle(const std::vector<std::string>& flags, const std::string& besid
 }
 
 void check_effects(const ComparisonArguments& args) {
-  if (!args.methods.empty() && !args.sweep) {
-    refuse_idle(given_flags({{"--eps-b", &args.eps_b},
-                             {"--eps-a", &args.eps_a},
-                             {"--rays", &args.rays},
-                             {"--seeds", &args.seeds},
-                             {"--pattern", &args.pattern},
-                             {"--variant", &args.variant},
-                             {"--sweep-budget", &args.sweep_budget}}),
-                "beside --method", "with --method, the sweep of Tampieri's algorithm over these values does not run",
-                "add --sweep, or write a setting of the method, such as --method adaptive:eps_B=0.1|0.01,rays=16");
+  if (args.methods.empty() || args.sweep) return;
+  std::vector<std::string> given;
+  for (const TextFlag& flag : kLists) {
+    if (!(args.*flag.text).empty()) given.emplace_back(flag.name);
   }
+  if (!args.sweep_budget.empty()) given.emplace_back("--sweep-budget");
+  refuse_idle(given, "beside --method",
+              "with --method, the sweep of Tampieri's algorithm over these values does not run",
+              "add --sweep, or write a setting of the method, such as --method adaptive:eps_B=0.1|0.01,rays=16");
 }
 
 study::Sweeps sweeps_of(const ComparisonArguments& args) {
@@ -231,19 +252,11 @@ std::string command_words(const ComparisonArguments& args) {
     if (!value.empty()) line += std::string(" ") + flag + ' ' + text::shell_word(value);
   };
   line += command_words(args.scene) + command_words(args.receivers) + command_words(args.sources);
-  add("--eps-b", args.eps_b);
-  add("--eps-a", args.eps_a);
-  add("--rays", args.rays);
-  add("--seeds", args.seeds);
-  add("--pattern", args.pattern);
-  add("--variant", args.variant);
+  for (const TextFlag& flag : kLists) add(flag.name, args.*flag.text);
   for (const std::string& method : args.methods) add("--method", method);
   if (args.no_methods) line += " --no-methods";
   if (args.sweep) line += " --sweep";
-  add("--method-seeds", args.method_seeds);
-  add("--method-receivers", args.method_receivers);
-  add("--method-budget", args.method_budget);
-  add("--sweep-budget", args.sweep_budget);
+  for (const TextFlag& flag : kLimits) add(flag.name, args.*flag.text);
   if (args.engine.engine() != Engine::kEdges) add("--engine", args.engine.name);
   line += command_words(args.camera);
   add("--title", args.title);
@@ -255,22 +268,10 @@ void ComparisonArguments::add_to(CLI::App& app) {
   scene.add_to(app);
   add_receiver_options(app, receivers);
   add_source_options(app, sources);
-  app.add_option("--eps-b", eps_b,
-                 "Values of eps_B, the tolerance of the adaptive algorithm: a radiosity for each leaf (default: "
-                 "max(rho B) times 1e-1,...,1e-5)")
-      ->type_name("LIST");
-  app.add_option("--eps-a", eps_a,
-                 "Values of eps_A, the area below which nothing is split (default: 0 and the mean area of a source "
-                 "face times 1e-1,...,1e-4)")
-      ->type_name("LIST");
-  app.add_option("--rays", rays, "Numbers of shadow rays per undecided leaf (default: 1,4,16,64,256)")
-      ->type_name("LIST");
-  app.add_option("--seeds", seeds, "Seeds of the shadow rays (default: 1,...,10)")->type_name("LIST");
-  app.add_option("--pattern", pattern, "Where rays end: jittered, centre, regular, low-discrepancy (default: all)")
-      ->type_name("LIST");
-  app.add_option("--variant", variant,
-                 "literal: the algorithm as printed in 1992; mended: with its faults corrected (default: both)")
-      ->type_name("LIST");
+  const auto add = [&](const TextFlag& flag) {
+    app.add_option(flag.name, this->*flag.text, flag.help)->type_name(flag.type);
+  };
+  std::ranges::for_each(kLists, add);
   CLI::Option* method =
       app.add_option("--method", methods,
                      "A method to compare with the exact values; can be repeated (default: all, and the "
@@ -283,18 +284,7 @@ void ComparisonArguments::add_to(CLI::App& app) {
   app.add_flag("--sweep", sweep,
                "Also run the ray-sampled adaptive algorithm over --eps-b, --eps-a, --rays, --seeds, --pattern and "
                "--variant, as is done if no --method is given");
-  app.add_option("--method-seeds", method_seeds, "Run stochastic methods with seeds 1 to N (default: 30)")
-      ->type_name("N");
-  app.add_option("--method-receivers", method_receivers,
-                 "Number of receivers at which methods are compared (default: 48)")
-      ->type_name("N");
-  app.add_option("--method-budget", method_budget,
-                 "Time limit for each method on a scene. The time is estimated from counted work at fixed prices, so "
-                 "that the settings that run do not depend on the machine (default: 2)")
-      ->type_name("SECONDS");
-  app.add_option("--sweep-budget", sweep_budget,
-                 "The same limit for all settings of the adaptive algorithm together (default: 25)")
-      ->type_name("SECONDS");
+  std::ranges::for_each(kLimits, add);
   engine.add_to(app);
   camera.add_to(app, "Pictures in the report: where the camera stands (default: where it shows the whole scene)",
                 "The point that it looks at");

@@ -4,8 +4,8 @@
 //   title Form factors of rooms
 //   scene cornell_box.obj --on floor --grid 32x32 --title "Cornell box"
 //   scene @karkanis:n=200 --on ... --unless-abridged
-//   experiment karkanis-times nettle-rule
-//   experiment closure --unless-abridged
+//   experiment karkanis-times
+//   experiment meshing --unless-abridged
 //
 // A scene line has the words and flags that `exactff compare` takes for one scene (flags/comparison.h). Files are
 // looked up in the folder of the study.

@@ -1,25 +1,44 @@
-#include "experiments/hemicube_scatter.h"
-
+// Karkanis' two plots (experiments.h).
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 
+#include "exactff/view.h"
+#include "experiments/experiments.h"
 #include "files/parallel.h"
 #include "kernel/statistics.h"
 #include "text/phrases.h"
 
 namespace exactff::experiments {
-
 namespace {
 
-using page::Axes;
-using page::Series;
 using text::counted;
 using text::rounded;
 
 std::string choice_text(int resolution) { return "hemicube:resolution=" + std::to_string(resolution); }
 std::string pixels_text(int resolution) { return std::to_string(resolution) + " × " + std::to_string(resolution); }
+
+// The exact values of single faces, from one sweep over all that the receiver sees (exactff/view.h): the same bits as
+// one source after another.
+std::vector<double> exact_values(const Scene& scene, const Receiver& receiver, std::span<const Selection> faces) {
+  std::vector<double> of_face(scene.faces().size());
+  for (const SeenPatch& seen : view(scene, receiver, {.faces = true}).patches) {
+    of_face[index_of(*seen.face)] = seen.form_factor.value;
+  }
+  std::vector<double> values;
+  for (const Selection& face : faces) values.push_back(of_face[index_of(face.face.value())]);
+  return values;
+}
+
+std::vector<double> values_of(std::string_view choice, const Scene& scene, const Receiver& receiver,
+                              std::span<const Selection> sources) {
+  Bench bench(methods::parse(choice), scene, sources);
+  std::vector<double> values;
+  for (const methods::Estimate& estimate : bench.look_from(receiver)) values.push_back(estimate.form_factor);
+  return values;
+}
 
 std::vector<ScatterPoint> points_of_scene(int number, const ScatterSize& size) {
   const KarkanisScene scene = karkanis_scene(size.triangles, static_cast<std::uint64_t>(number));
@@ -37,6 +56,9 @@ std::vector<ScatterPoint> points_of_scene(int number, const ScatterSize& size) {
 double error_of(const ScatterPoint& point, std::size_t resolution) {
   return std::abs(point.hemicube[resolution] - point.exact) / point.exact;
 }
+
+// The form factor of the pixel around the normal, which is the largest one: of side 2 / n at distance 1.
+double largest_pixel(int resolution) { return 4.0 / (std::numbers::pi * resolution * resolution); }
 
 struct Counts {
   std::size_t visible = 0;
@@ -108,7 +130,8 @@ std::string trend_sentence(std::span<const ScatterPoint> points, const ScatterSi
   for (std::size_t r = 0; r < size.resolutions.size(); ++r) {
     const std::vector<double> slopes = scatter_slopes(points, size, r);
     if (slopes.size() < 2) continue;
-    powers.push_back(to_text(mean_slope(slopes)) + " with " + pixels_text(size.resolutions[r]) + " pixels");
+    powers.push_back(slope_text(kernel::mean(slopes)) + " ± " + slope_text(kernel::mean_half_width(slopes)) + " with " +
+                     pixels_text(size.resolutions[r]) + " pixels");
   }
   if (powers.empty()) return {};
   return "Karkanis' trend is confirmed: the error falls as the form factor grows. For triangles larger than a pixel, "
@@ -220,9 +243,6 @@ std::vector<ScatterDecade> scatter_decades(std::span<const ScatterPoint> points,
   return decades;
 }
 
-// The form factor of a pixel of side 2 / n at distance 1.
-double largest_pixel(int resolution) { return 4.0 / (std::numbers::pi * resolution * resolution); }
-
 std::vector<double> scatter_slopes(std::span<const ScatterPoint> points, const ScatterSize& size,
                                    std::size_t resolution) {
   constexpr std::size_t kFew = 10;
@@ -242,13 +262,15 @@ std::vector<double> scatter_slopes(std::span<const ScatterPoint> points, const S
 
 Result hemicube_scatter(const ScatterSize& size, int threads, const Hooks& hooks) {
   const std::vector<ScatterPoint> points = scatter_points(size, threads, hooks);
-  Result result{.name = "hemicube-scatter", .title = "Karkanis' two plots: hemicube against exact"};
-  result.paragraphs = {scene_sentence(points, size), missed_sentence(points, size), trend_sentence(points, size)};
-  std::erase(result.paragraphs, "");
-  result.tables = {missed_table(points, size), decades_of(scatter_decades(points, 0))};
-  result.figures = {value_figure(points, size.resolutions.front()), error_figure(points, size)};
-  result.values = {point_table(points, size), decade_table(points, size)};
-  return result;
+  std::vector<std::string> paragraphs{scene_sentence(points, size), missed_sentence(points, size),
+                                      trend_sentence(points, size)};
+  std::erase(paragraphs, "");
+  return {.name = "hemicube-scatter",
+          .title = "Karkanis' two plots: hemicube against exact",
+          .paragraphs = std::move(paragraphs),
+          .tables = {missed_table(points, size), decades_of(scatter_decades(points, 0))},
+          .figures = {value_figure(points, size.resolutions.front()), error_figure(points, size)},
+          .values = {point_table(points, size), decade_table(points, size)}};
 }
 
 Result hemicube_scatter(const Effort& effort, const Hooks& hooks) {

@@ -1,20 +1,16 @@
-#include "experiments/karkanis_times.h"
-
+// Karkanis' timings (experiments.h).
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "exactff/exact.h"
+#include "experiments/experiments.h"
 #include "files/parallel.h"
-#include "page/figure.h"
 #include "text/phrases.h"
 
 namespace exactff::experiments {
-
 namespace {
 
-using page::Axes;
-using page::Series;
-using text::counted;
 using text::duration;
 using text::rounded;
 
@@ -27,6 +23,22 @@ constexpr std::array<HisTime, 4> kHis = {{{50, 0.2}, {100, 2.8}, {200, 300.0}, {
 constexpr std::string_view kKarkanisStage = "karkanis-times";
 
 // ------------------------------------------------------------------------------------------------------- measurements
+
+// Seconds for all patches.
+struct TimeRow {
+  int triangles = 0;
+  double with_shaft = 0.0;
+  std::optional<double> without_shaft = {};
+  double hemicube = 0.0;
+  double rays = 0.0;
+};
+
+std::vector<ExactSource> exact_sources(const Scene& scene, std::span<const Selection> sources) {
+  std::vector<ExactSource> exact;
+  exact.reserve(sources.size());
+  for (const Selection& source : sources) exact.emplace_back(scene, source);
+  return exact;
+}
 
 std::vector<FormFactor> all_patches(const KarkanisScene& scene, const std::vector<ExactSource>& sources,
                                     ShaftCulling culling, const Hooks& hooks) {
@@ -89,34 +101,6 @@ TimeRow time_row(const TimesSize& size, int triangles, const std::vector<TimeRow
   return row;
 }
 
-// The error and the cost of rays on one scene.
-struct Affordable {
-  int rays = 0;
-  double seconds = 0.0;
-  double error = 0.0;  // RMS over the patches, divided by the RMS form factor
-};
-
-std::vector<Affordable> affordable_rays(const TimesSize& size, const Hooks& hooks) {
-  const KarkanisScene scene = karkanis_scene(size.affordable_at, 1);
-  std::vector<double> exact;
-  for (const FormFactor& f :
-       all_patches(scene, exact_sources(scene.scene, scene.triangles), ShaftCulling::kTree, hooks)) {
-    exact.push_back(f.value);
-  }
-  std::vector<Affordable> rows;
-  for (const int rays : size.affordable) {
-    files::require_not_cancelled(hooks);
-    Bench bench(methods::parse(rays_choice(rays)), scene.scene, scene.triangles);
-    std::vector<double> errors;
-    for (const methods::Estimate& e : bench.look_from(scene.receiver)) {
-      errors.push_back(e.form_factor - exact[errors.size()]);
-    }
-    const double seconds = median_seconds([&] { (void)bench.look_from(scene.receiver); });
-    rows.push_back({rays, seconds, root_mean_square(errors) / root_mean_square(exact)});
-  }
-  return rows;
-}
-
 // ---------------------------------------------------------------------------------------------------------- sentences
 
 std::string his_list() {
@@ -127,11 +111,6 @@ std::string his_list() {
     text += (i == 1 ? "" : i + 1 == kHis.size() ? " and " : ", ") + rounded(exponent, 2);
   }
   return text;
-}
-
-const TimeRow* row_at(const std::vector<TimeRow>& rows, int triangles) {
-  const auto found = std::ranges::find(rows, triangles, &TimeRow::triangles);
-  return found == rows.end() ? nullptr : &*found;
 }
 
 // The exponent over about the last factor of four, where start-up costs no longer matter.
@@ -163,8 +142,8 @@ std::string large_number(double value) {
 
 std::string against_him(const std::vector<TimeRow>& rows) {
   std::string text = "The certified form factors of all triangles from one point, on one thread";
-  const TimeRow* at = row_at(rows, kHis.back().triangles);
-  if (at == nullptr) return text + '.';
+  const auto at = std::ranges::find(rows, kHis.back().triangles, &TimeRow::triangles);
+  if (at == rows.end()) return text + '.';
   return text + ", take " + duration(at->with_shaft) + " for " + std::to_string(at->triangles) +
          " triangles, where Karkanis needed about 8 hours on a 300 MHz Pentium II, " +
          large_number(kHis.back().seconds / at->with_shaft) + " times as long.";
@@ -217,22 +196,6 @@ std::string bits_sentence(const std::vector<WorkRow>& rows) {
          rounded(static_cast<double>(*last.looked_at_without) / last.triangles, 3) + ".";
 }
 
-std::string affordable_sentence(const std::vector<Affordable>& rows, double exact_time, int triangles) {
-  const auto dearer = std::ranges::find_if(rows, [&](const Affordable& a) { return a.seconds >= exact_time; });
-  if (dearer == rows.end()) return {};
-  const std::string at = " on the scene of " + std::to_string(triangles) + " triangles";
-  if (dearer == rows.begin()) {
-    return "Sampling is not faster" + at + ": " + counted(static_cast<std::uint64_t>(dearer->rays), "ray") +
-           " to each triangle take " + duration(dearer->seconds) + " against " + duration(exact_time) +
-           " for the exact method, with an RMS error of " + percent(dearer->error) + " of the RMS form factor.";
-  }
-  const Affordable& cheaper = *std::prev(dearer);
-  return "In the time of the exact method" + at + " (" + duration(exact_time) +
-         "), stratified sampling can send between " + std::to_string(cheaper.rays) + " and " +
-         std::to_string(dearer->rays) + " rays to each triangle; its RMS error is then between " +
-         percent(dearer->error) + " and " + percent(cheaper.error) + " of the RMS form factor.";
-}
-
 // ------------------------------------------------------------------------------------------------------------ figures
 
 page::Figure figure(const std::vector<TimeRow>& rows, int rays) {
@@ -268,14 +231,6 @@ CsvFile time_table(const std::vector<TimeRow>& rows, const TimesSize& size) {
     table.row() << row.triangles << row.with_shaft << row.without_shaft << row.hemicube << row.rays;
   }
   return table.finish("karkanis-times.csv", "time for all patches from one point against their number");
-}
-
-CsvFile affordable_table(const std::vector<Affordable>& rows, int triangles) {
-  TableWriter table("stratified sampling of all triangles of karkanis:n=" + std::to_string(triangles) +
-                        ",floor=0,seed=1 from one point: seconds, and the RMS error over the RMS form factor",
-                    {"rays", "seconds", "error"});
-  for (const Affordable& row : rows) table.row() << row.rays << row.seconds << row.error;
-  return table.finish("karkanis-times-rays.csv", "what rays cost and how far off they are on one of his scenes");
 }
 
 CsvFile work_table(const std::vector<WorkRow>& rows) {
@@ -335,18 +290,17 @@ Result karkanis_times(const TimesSize& size, const Hooks& hooks) {
     times.push_back(time_row(size, triangles, times, hooks));
     if (hooks.progress) hooks.progress({kKarkanisStage, times.size(), size.triangles.size()});
   }
-  const std::vector<Affordable> affordable = affordable_rays(size, hooks);
-  const TimeRow* at = row_at(times, size.affordable_at);
-  Result result{.name = "karkanis-times", .title = "Karkanis' timings: all patches from one point"};
-  result.paragraphs = {against_him(times), exponents_sentence(times), bits_sentence(work), others_sentence(times, size),
-                       at == nullptr ? "" : affordable_sentence(affordable, at->with_shaft, size.affordable_at)};
-  std::erase(result.paragraphs, "");
-  result.tables = {times_table(times, size)};
-  result.figures = {figure(times, size.rays)};
-  result.values = {work_table(work)};
-  result.times = {time_table(times, size), affordable_table(affordable, size.affordable_at)};
-  result.left_out = left_out(times, size);
-  return result;
+  std::vector<std::string> paragraphs{against_him(times), exponents_sentence(times), bits_sentence(work),
+                                      others_sentence(times, size)};
+  std::erase(paragraphs, "");
+  return {.name = "karkanis-times",
+          .title = "Karkanis' timings: all patches from one point",
+          .paragraphs = std::move(paragraphs),
+          .tables = {times_table(times, size)},
+          .figures = {figure(times, size.rays)},
+          .values = {work_table(work)},
+          .times = {time_table(times, size)},
+          .left_out = left_out(times, size)};
 }
 
 Result karkanis_times(const Effort& effort, const Hooks& hooks) {
@@ -356,7 +310,6 @@ Result karkanis_times(const Effort& effort, const Hooks& hooks) {
     size.same_bits_up_to = 200;
     size.budget = 2.0;
     size.rays = 1000;
-    size.affordable = {1, 4, 16, 64};
   }
   Result result = karkanis_times(size, hooks);
   if (effort.abridged) result.left_out.push_back({"Karkanis' scenes above 500 triangles, and 10,000 rays", "abridged"});

@@ -1,5 +1,4 @@
-#include "experiments/meshing.h"
-
+// One radiosity for each cell (experiments.h).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,21 +7,19 @@
 
 #include "exactff/matrix.h"
 #include "exactff/radiosity.h"
+#include "experiments/experiments.h"
 #include "files/parallel.h"
 #include "kernel/statistics.h"
+#include "study/statistics.h"
 #include "text/phrases.h"
 
 namespace exactff::experiments {
-
 namespace {
 
-using page::Axes;
-using page::Series;
 using text::counted;
 using text::rounded;
 
 constexpr double kNoError = std::numeric_limits<double>::quiet_NaN();
-constexpr double kPerPixel = 99.0;  // percentile
 
 // --- the scene ---
 
@@ -146,29 +143,30 @@ double half_width_of(const render::Picture& picture, const std::vector<std::size
     }
     halves.push_back(largest);
   }
-  return root_mean_square(halves);
+  return study::error_statistics(halves).rms;
 }
 
 // Of the pixels for which the predicate holds.
 template <class Counts>
 MeshingErrors errors_where(const Counts& counts, const std::vector<double>& errors, const render::Picture& judged,
                            const render::Picture& reference) {
-  std::vector<double> magnitudes;
+  std::vector<double> counted_errors;
   double sum = 0.0, expected = 0.0;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (!counts(i)) continue;
-    magnitudes.push_back(std::abs(errors[i]));
+    counted_errors.push_back(errors[i]);
     for (std::size_t c = 0; c < 3; ++c) {
       sum += judged.values[3 * i + c];
       expected += reference.values[3 * i + c];
     }
   }
-  if (magnitudes.empty()) return {};
-  return {.pixels = magnitudes.size(),
+  if (counted_errors.empty()) return {};
+  const study::ErrorStatistics found = study::error_statistics(counted_errors);
+  return {.pixels = counted_errors.size(),
           .mean_ratio = expected > 0.0 ? sum / expected : 1.0,
-          .rms = root_mean_square(magnitudes),
-          .p99 = kernel::percentile(magnitudes, kPerPixel),
-          .worst = *std::ranges::max_element(magnitudes)};
+          .rms = found.rms,
+          .p99 = found.p99,
+          .worst = found.worst};
 }
 
 double share_of_worst_tenth(const std::vector<double>& errors) {

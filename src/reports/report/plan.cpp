@@ -1,16 +1,22 @@
-// What a report covers, and how it is carried out.
+// What a report covers, how it is carried out, and how it is written into a folder.
 #include "report/plan.h"
 
 #include <algorithm>
 #include <cctype>
+#include <fstream>
+#include <iterator>
+#include <type_traits>
 
-#include "experiments/experiment.h"
+#include "exactff/version.h"
+#include "files/file.h"
 #include "files/parallel.h"
 #include "kernel/float_environment.h"
 #include "page/chapter.h"
-#include "report/identity.h"
+#include "page/output_folder.h"
 #include "report/report.h"
 #include "report/verdicts.h"
+#include "text/escape.h"
+#include "text/fnv1a.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
@@ -72,6 +78,79 @@ Outcome outcome_of(const StudyReport& report) {
   return outcome;
 }
 
+// Everything that the values and the words of a report depend on; not threads or the engine.
+class Identity {
+ public:
+  template <class... Parts>
+  void add(const Parts&... parts) {
+    (add_one(parts), ...);
+  }
+  [[nodiscard]] std::string digits() const { return hash_.digits(); }
+
+ private:
+  void add_one(const std::string& text) {
+    hash_.add(std::uint64_t{text.size()});
+    hash_.add_bytes(text);
+  }
+  void add_one(double number) { hash_.add(number); }
+  template <class Number>
+  requires std::is_integral_v<Number> || std::is_enum_v<Number>
+  void add_one(Number number) { hash_.add(static_cast<std::uint64_t>(number)); }
+  template <class Item>
+  void add_one(const std::vector<Item>& list) {
+    add(list.size());
+    for (const Item& item : list) add(item);
+  }
+  template <class Value>
+  void add_one(const std::optional<Value>& value) {
+    add(value.has_value());
+    if (value) add(*value);
+  }
+  void add_one(const Vec3& v) { hash_.add(v); }
+  void add_one(const LeftOut& item) { add(item.what, item.why); }
+  void add_one(const Receiver& r) { add(r.point, r.normal, r.on, r.id); }
+  void add_one(const methods::Choice& choice) { add(choice.text()); }
+  void add_one(const study::Ladder& ladder) { add(ladder.name, ladder.along, ladder.rungs); }
+  void add_one(const render::Camera& camera) { add(camera.eye, camera.look, camera.up, camera.fov); }
+  void add_one(const study::Sweeps& s) { add(s.enabled, s.eps_b, s.eps_a, s.rays, s.seeds, s.patterns, s.variants); }
+  void add_one(const study::MethodSweep& m) { add(m.enabled, m.ladders, m.seeds, m.receivers, m.budget); }
+  void add_one(const PlannedScene& scene) {
+    const study::Request& request = scene.request;
+    add(scene.name, scene.title, scene.scene->hash(), request.scene_name, request.receivers_name, request.receivers);
+    for (const Selection& source : request.sources) add(scene.scene->name_of(source));
+    add(request.sweeps, request.methods, request.sweep_budget, request.seconds_for_a_time, request.camera, request.up);
+  }
+
+  text::Fnv1a hash_;
+};
+
+// The line of the page that says what was asked for: a finished folder of the same request need not be computed again.
+std::string identity_line(const Plan& plan) {
+  Identity identity;
+  identity.add(std::string(kVersion), plan.title, plan.scenes, plan.experiments, plan.left_out, plan.effort.abridged);
+  return "<!-- request " + identity.digits() + " -->";
+}
+
+std::filesystem::path page_in(const std::filesystem::path& folder) { return folder / page::kReportFile; }
+
+void write_tables(const SceneChapter& scene, const std::filesystem::path& folder, const Hooks& hooks) {
+  for (const StudyTable& table : tables()) {
+    if (!table.has_rows(scene.study)) continue;
+    files::require_not_cancelled(hooks);
+    files::write_file(folder / file_name(scene, table), [&](std::ostream& out) { table.write(scene.study, out); });
+  }
+}
+
+void write_tables(const page::Chapter& chapter, const std::filesystem::path& folder) {
+  for (const auto* list : {&chapter.values, &chapter.times}) {
+    for (const page::CsvFile& table : *list) {
+      files::write_file(folder / table.file, [&](std::ostream& out) {
+        out << "# " << text::program_version() << " compare: " << text::csv_comment(table.holds) << '\n' << table.csv;
+      });
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> experiment_names() {
@@ -102,6 +181,39 @@ void Plan::add_experiments(const std::vector<std::string>& names) {
   }
 }
 
+std::vector<std::string> write(const StudyReport& report, const std::filesystem::path& folder, const Hooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
+  page::StagedFolder staged(folder);
+  std::vector<std::string> messages;
+  std::string without_gnuplot;  // why there are no figures, once that is known
+  const auto draw = [&](std::vector<page::Figure> figures, std::vector<LeftOut> left_out, const std::string& prefix) {
+    for (page::Figure& figure : figures) figure.id = prefix.empty() ? figure.id : prefix + '-' + figure.id;
+    page::DrawnFigures drawn;
+    drawn.none = without_gnuplot;
+    if (drawn.none.empty()) drawn = page::draw_figures(std::move(figures), staged.path(), messages, hooks);
+    without_gnuplot = drawn.none;
+    std::ranges::move(drawn.left_out, std::back_inserter(left_out));
+    return Page{std::move(drawn), std::move(left_out)};
+  };
+  Pages pages;
+  for (const SceneChapter& scene : report.scenes) {
+    write_tables(scene, staged.path(), hooks);
+    std::vector<LeftOut> left_out = scene.study.left_out;
+    std::vector<page::Figure> wanted = figures(scene.study, left_out);
+    std::optional<Strip> strip = strip_of(scene.study, left_out, hooks);
+    pages.scenes.push_back(draw(std::move(wanted), std::move(left_out), scene.name));
+    pages.scenes.back().strip = std::move(strip);
+  }
+  for (const page::Chapter& chapter : report.chapters) {
+    write_tables(chapter, staged.path());
+    pages.chapters.push_back(draw(chapter.figures, chapter.left_out, chapter.name));
+  }
+  files::write_file(staged.path() / page::kReportFile, [&](std::ostream& out) { out << report_page(report, pages); });
+  files::require_not_cancelled(hooks);
+  staged.commit();
+  return messages;
+}
+
 Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::Journal& journal, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   if (plan.scenes.empty() && plan.experiments.empty()) {
@@ -118,7 +230,7 @@ Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::J
   StudyReport report;
   report.title = plan.title;
   report.command_line = plan.command_line;
-  report.identity = identity_of(plan);
+  report.identity = identity_line(plan);
   report.left_out = plan.left_out;
   for (const PlannedScene& scene : plan.scenes) {
     report.scenes.push_back({scene.name, scene.title, study::run(scene.request, with_title(scene, hooks), &journal)});
@@ -132,4 +244,27 @@ Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::J
   return outcome;
 }
 
+bool has_report(const std::filesystem::path& folder) { return files::is_there(page_in(folder)); }
+
+Finished finished_report(const Plan& plan, const std::filesystem::path& folder) {
+  if (!has_report(folder)) return Finished::kNone;
+  const std::string wanted = identity_line(plan);
+  std::ifstream page(page_in(folder), std::ios::binary);
+  for (std::string line; std::getline(page, line);) {
+    if (line == wanted) return Finished::kOfThis;
+  }
+  return Finished::kOfAnother;
+}
+
 }  // namespace exactff::report
+
+namespace exactff::study {
+
+std::vector<std::string> write_report(const Study& study, const std::filesystem::path& folder, const Hooks& hooks) {
+  report::StudyReport report;
+  report.scenes.push_back({"", study.request.scene_name, study});
+  report.command_line = study.request.command_line;
+  return write(report, folder, hooks);
+}
+
+}  // namespace exactff::study

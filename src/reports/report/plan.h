@@ -9,20 +9,11 @@
 #include "exactff/error.h"
 #include "exactff/progress.h"
 #include "exactff/study.h"
+#include "experiments/experiments.h"
 
 namespace exactff::report {
 
-// Writes the exact values, and the value and the error of each setting that was run at every receiver, for ParaView
-// (vtk::write): the settings of the adaptive algorithm, and of each method that of MethodField.
-void write_vtk(const study::Study& study, const std::filesystem::path& file, const Hooks& hooks = {});
-
-// The main result in a few sentences.
-[[nodiscard]] std::vector<std::string> headlines(const study::Study& study);
-
-struct Effort {
-  bool abridged = false;  // a first look: coarser grids, fewer settings and receivers, shorter experiments
-  int threads = 0;        // 0: as many as this process may use; values do not depend on it
-};
+using experiments::Effort;
 
 struct PlannedScene {
   std::string name;   // letters, digits and hyphens, for the names of files; empty: the report is on this scene alone

@@ -1,5 +1,3 @@
-#include "report/strip.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,9 +6,8 @@
 
 #include "exactff/render.h"
 #include "kernel/vec.h"
-#include "report/tables.h"
-#include "study/budget.h"
-#include "study/ladders.h"
+#include "report/report.h"
+#include "study/runs.h"
 #include "study/settings.h"
 #include "text/phrases.h"
 
@@ -208,25 +205,6 @@ std::optional<Strip> draw_strip(const Study& study, const Shown& shown, const re
       .wrong = static_cast<double>(errors.wrong) / static_cast<double>(std::max<std::uint64_t>(errors.pixels, 1))};
 }
 
-}  // namespace
-
-std::optional<Shown> shown_method(const Study& study) {
-  if (!study.settings.empty()) {
-    Shown shown{
-        "the base setting", study::setting_name(study, study.base), study::choice_of(study.settings[study.base]), {}};
-    for (const SampleRow& row : study.samples[study.base]) shown.errors.push_back(row.radiosity_error);
-    return shown;
-  }
-  for (const MethodField& field : study.methods.fields) {
-    const Ladder& ladder = study.methods.ladders[field.ladder];
-    if (ladder.rungs.front().method->name == "exact") continue;
-    return Shown{ladder.name, study::rung_name(ladder, field.rung), ladder.rungs[field.rung], field.radiosity_errors};
-  }
-  return std::nullopt;
-}
-
-namespace {
-
 // A picture by the method that the maps show; if it is too dear for one, by area sampling, if that was run.
 struct Painting {
   Shown shown;
@@ -250,6 +228,21 @@ std::optional<Painting> affordable_painting(const Study& study, Shown shown) {
 }
 
 }  // namespace
+
+std::optional<Shown> shown_method(const Study& study) {
+  if (!study.settings.empty()) {
+    Shown shown{
+        "the base setting", study::setting_name(study, study.base), study::choice_of(study.settings[study.base]), {}};
+    for (const SampleRow& row : study.samples[study.base]) shown.errors.push_back(row.radiosity_error);
+    return shown;
+  }
+  for (const MethodField& field : study.methods.fields) {
+    const Ladder& ladder = study.methods.ladders[field.ladder];
+    if (ladder.rungs.front().method->name == "exact") continue;
+    return Shown{ladder.name, study::rung_name(ladder, field.rung), ladder.rungs[field.rung], field.radiosity_errors};
+  }
+  return std::nullopt;
+}
 
 std::optional<Strip> strip_of(const Study& study, std::vector<LeftOut>& left_out, const Hooks& hooks) {
   const auto leave_out = [&](const std::string& why) {

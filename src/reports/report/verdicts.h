@@ -8,11 +8,10 @@
 
 #include <array>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "report/studies.h"
+#include "report/report.h"
 
 namespace exactff::report {
 
@@ -48,6 +47,9 @@ inline constexpr std::array kWantedErrors = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 // The rival that a verdict recommends where its error will do: the most accurate of those that are at least as fast as
 // the exact method. Null if there is none.
 [[nodiscard]] const MethodCell* recommended(const Study& study);
+
+// The main result in a few sentences.
+[[nodiscard]] std::vector<std::string> headlines(const Study& study);
 
 // One sentence that says when to use the exact method and when another one.
 [[nodiscard]] std::string verdict(const Study& study);

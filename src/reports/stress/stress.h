@@ -9,7 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
-#include <span>
+#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +17,7 @@
 #include "exactff/enclosure.h"
 #include "exactff/exact.h"
 #include "exactff/progress.h"
+#include "page/figure.h"
 
 namespace exactff::stress {
 
@@ -147,5 +148,21 @@ void write_part(const Report& report, const std::filesystem::path& folder);
 // The same for every threshold: "10⁸ · 10⁵ · 100", or "all". Of a method with a tolerance: up to which stiffness it
 // keeps it. Adds "(refused)" if the method then refuses the scene.
 [[nodiscard]] std::string reaches_text(const FamilyResult& result, Method method);
+
+// --- the parts of the report ---
+
+struct StressTable {
+  std::string_view file;
+  std::string_view holds;  // for the report's list of files
+  void (*write)(const Report& report, std::ostream& out);
+};
+// The CSV files, in the order of the report's list. Only timings.csv holds times.
+[[nodiscard]] const std::array<StressTable, 3>& tables();
+
+// Error, precision and time against the stiffness.
+[[nodiscard]] std::vector<page::Figure> figures(const FamilyResult& result);
+
+// One HTML page that loads nothing and has no scripts. `drawn` holds the figures of all families, in order.
+[[nodiscard]] std::string report_page(const Report& report, const page::DrawnFigures& drawn);
 
 }  // namespace exactff::stress

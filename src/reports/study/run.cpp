@@ -3,8 +3,7 @@
 //   1. Complete the request: sources, threads. Refuse a request without receivers or sources.
 //   2. Compute the exact values of every receiver and source. They also show what there is to sample.
 //   3. Choose sweeps and ladders: defaults, without those that cannot affect the scene. Join them to one list of
-//   ladders,
-//      whose rungs are the settings, and plan how much of it is run (budget.h).
+//      ladders, whose rungs are the settings, and plan how much of it is run (runs.h).
 //   4. Run the settings (runs.h).
 //   5. Find where visibility changes in kind; compute a profile along a line.
 //   6. Measure the times of every setting, with nothing else running.
@@ -20,17 +19,10 @@
 #include "kernel/float_environment.h"
 #include "methods/adaptive_settings.h"
 #include "scene/misuse.h"
-#include "study/budget.h"
-#include "study/ladders.h"
-#include "study/prepared_method.h"
-#include "study/profile.h"
-#include "study/radiosity.h"
 #include "study/runs.h"
 #include "study/settings.h"
-#include "study/shadow_edges.h"
 #include "study/sight.h"
 #include "study/statistics.h"
-#include "study/timing.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 

@@ -2,11 +2,22 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/geometry.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <cmath>
+#include <map>
+
+#include "files/parallel.h"
+#include "kernel/expect.h"
+#include "kernel/vec.h"
+#include "study/settings.h"
+#include "study/statistics.h"
 
 namespace exactff::study {
 namespace {
 
-Sight sight_of(Outcome outcome) {
+Sight sight_by(Outcome outcome) {
   switch (outcome) {
     case Outcome::kUnoccluded:
       return Sight::kVisible;
@@ -29,11 +40,228 @@ void take_evenly(std::vector<std::size_t>& chosen, const std::vector<std::size_t
   for (std::size_t i = 0; i < count; ++i) chosen.push_back(from[(2 * i + 1) * from.size() / (2 * count)]);
 }
 
+// --- shadow edges ---
+
+// The one lattice that all receivers belong to; null if there is none.
+const Lattice* lattice_of(const std::vector<Receiver>& receivers) {
+  if (receivers.empty() || !receivers.front().cell) return nullptr;
+  const Lattice* const lattice = receivers.front().cell->lattice.get();
+  const auto on_it = [&](const Receiver& r) { return r.cell && r.cell->lattice.get() == lattice; };
+  return std::ranges::all_of(receivers, on_it) ? lattice : nullptr;
+}
+
+namespace bgi = boost::geometry::index;
+using Point = boost::geometry::model::point<double, 3, boost::geometry::cs::cartesian>;
+using kernel::distance;
+using Tree = bgi::rtree<Point, bgi::rstar<16>>;
+
+constexpr int kRasterCells = 16384;
+constexpr int kRasterCellsOfLargeScenes = 4096;
+constexpr std::size_t kLargeScene = 300;  // faces
+
+// A grid on the same face as that of the receivers, several times finer. Every cell is classified exactly. Where two
+// adjacent cells differ, an edge runs between their centres; it is assumed to be half-way.
+class Raster {
+ public:
+  Raster(const Request& request, const Lattice& grid) : request_(request) {
+    const bool large = request.scene->faces().size() > kLargeScene;
+    const int cells = grid.size.u * grid.size.v;
+    const int finer = static_cast<int>(std::sqrt((large ? kRasterCellsOfLargeScenes : kRasterCells) / cells));
+    size_ = {grid.size.u * std::max(finer, 1), grid.size.v * std::max(finer, 1)};
+    receivers_ = grid_receivers(*request.scene, std::span(&grid.region, 1), size_);
+  }
+
+  // On surfaces that are not quadrilaterals, some cells are missing.
+  [[nodiscard]] bool complete() const {
+    return receivers_.size() == static_cast<std::size_t>(size_.u) * static_cast<std::size_t>(size_.v);
+  }
+
+  void classify(std::span<const ExactSource> sources, const Hooks& hooks) {
+    sights_.resize(receivers_.size());
+    files::parallel_for(receivers_.size(), request_.threads, "shadow edges", hooks,
+                        [&](std::size_t i) { sights_[i] = sights(*request_.scene, receivers_[i], sources); });
+  }
+
+  [[nodiscard]] std::vector<Point> edges() const {
+    std::vector<Point> found;
+    for (int v = 0; v < size_.v; ++v) {
+      for (int u = 0; u < size_.u; ++u) {
+        if (u + 1 < size_.u) add_edge(found, index(u, v), index(u + 1, v));
+        if (v + 1 < size_.v) add_edge(found, index(u, v), index(u, v + 1));
+      }
+    }
+    return found;
+  }
+
+  [[nodiscard]] double spacing() const {
+    double largest = 0.0;
+    if (size_.u > 1) largest = std::max(largest, distance(receivers_[0].point, receivers_[1].point));
+    if (size_.v > 1) largest = std::max(largest, distance(receivers_[0].point, receivers_[index(0, 1)].point));
+    return largest;
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(int u, int v) const {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(size_.u) + static_cast<std::size_t>(u);
+  }
+
+  void add_edge(std::vector<Point>& found, std::size_t a, std::size_t b) const {
+    if (sights_[a] == sights_[b]) return;
+    const Vec3 p = receivers_[a].point, q = receivers_[b].point;
+    found.emplace_back(0.5 * (p.x + q.x), 0.5 * (p.y + q.y), 0.5 * (p.z + q.z));
+  }
+
+  const Request& request_;
+  GridSize size_;
+  std::vector<Receiver> receivers_;
+  std::vector<std::vector<Sight>> sights_;
+};
+
+double nearest_distance(const Tree& tree, const Vec3& p) {
+  const Point from(p.x, p.y, p.z);
+  double best = 0.0;
+  for (auto found = tree.qbegin(bgi::nearest(from, 1)); found != tree.qend(); ++found) {
+    best = boost::geometry::distance(from, *found);
+  }
+  return best;
+}
+
+// --- the profile ---
+
+constexpr int kPoints = 256;
+constexpr int kBisections = 20;
+constexpr std::size_t kMostCurves = 3;
+
+struct Line {
+  const Lattice& lattice;
+  int row = 0;
+};
+
+std::optional<Line> line_through_penumbra(const Study& study) {
+  const Lattice* const lattice = lattice_of(study.request.receivers);
+  if (lattice == nullptr || lattice->size.u < 2) return std::nullopt;
+  std::map<int, int> partly_by_row;
+  for (std::size_t i = 0; i < study.exact.size(); ++i) {
+    if (study.exact[i].sight == Sight::kPartly) ++partly_by_row[study.request.receivers[i].cell->row];
+  }
+  const auto most = std::max_element(partly_by_row.begin(), partly_by_row.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (most == partly_by_row.end()) return std::nullopt;
+  return Line{*lattice, most->first};
+}
+
+class Profiler {
+ public:
+  Profiler(const Study& study, std::span<const ExactSource> sources, const Hooks& hooks)
+      : study_(study), sources_(sources), hooks_(hooks) {
+    for (const Selection& source : request().sources) radiosities_.push_back(scene().source_radiosity(source));
+  }
+
+  std::optional<Profile> along(const Line& line) {
+    take_receivers(line);
+    if (profile_.receivers.size() < 2) return std::nullopt;
+    profile_.where = "row " + std::to_string(line.row) + " of " + name_of(scene(), line.lattice.region);
+    find_exact();
+    find_kinks();
+    add_curves();
+    return std::move(profile_);
+  }
+
+ private:
+  [[nodiscard]] const Request& request() const { return study_.request; }
+  [[nodiscard]] const Scene& scene() const { return *request().scene; }
+
+  void take_receivers(const Line& line) {
+    const GridSize size = line.lattice.size;
+    const GridSize finer{size.u * std::max(1, kPoints / size.u), size.v};
+    for (Receiver& receiver : grid_receivers(scene(), std::span(&line.lattice.region, 1), finer)) {
+      if (receiver.cell->row == line.row) profile_.receivers.push_back(std::move(receiver));
+    }
+    for (const Receiver& receiver : profile_.receivers) {
+      profile_.position.push_back(kernel::distance(receiver.point, profile_.receivers.front().point));
+    }
+  }
+
+  [[nodiscard]] double radiosity(const Receiver& receiver, const std::vector<double>& form_factors) const {
+    Rgb sum;
+    for (std::size_t s = 0; s < form_factors.size(); ++s) add(sum, times(radiosities_[s], form_factors[s]));
+    return times(scene().receiver_reflectance(receiver.on), sum).largest();
+  }
+
+  void find_exact() {
+    const std::size_t count = profile_.receivers.size();
+    profile_.exact.resize(count);
+    sights_.resize(count);
+    files::parallel_for(count, request().threads, "profile", hooks_, [&](std::size_t i) {
+      const Receiver& receiver = profile_.receivers[i];
+      std::vector<double> values;
+      for (const ExactSource& source : sources_) {
+        const FormFactor result = exact_form_factor(scene(), receiver, source);
+        values.push_back(result.value);
+        sights_[i].push_back(sight_of(result));
+      }
+      profile_.exact[i] = radiosity(receiver, values);
+    });
+  }
+
+  [[nodiscard]] Receiver between(std::size_t i, double t) const {
+    Receiver receiver = profile_.receivers[i];
+    const Vec3 &p = receiver.point, &q = profile_.receivers[i + 1].point;
+    receiver.point = kernel::along(p, kernel::difference(q, p), t);
+    return receiver;
+  }
+
+  // Finds by bisection a kink between two points whose sights differ.
+  void find_kinks() {
+    for (std::size_t i = 0; i + 1 < profile_.receivers.size(); ++i) {
+      if (sights_[i] == sights_[i + 1]) continue;
+      double low = 0.0, high = 1.0;
+      for (int step = 0; step < kBisections; ++step) {
+        const double middle = 0.5 * (low + high);
+        (sights(scene(), between(i, middle), sources_) == sights_[i] ? low : high) = middle;
+      }
+      profile_.kinks.push_back(profile_.position[i] + low * (profile_.position[i + 1] - profile_.position[i]));
+    }
+  }
+
+  // The middle rungs of the most common methods.
+  void add_curves() {
+    for (const char* wanted : {"adaptive", "hemicube", "area-sampling"}) {
+      const auto& ladders = study_.methods.ladders;
+      const auto found = std::find_if(ladders.begin(), ladders.end(), [&](const Ladder& ladder) {
+        return ladder.rungs.front().method->name == wanted;
+      });
+      if (found != ladders.end() && profile_.others.size() < kMostCurves) add_curve(*found);
+    }
+  }
+
+  void add_curve(const Ladder& ladder) {
+    const std::size_t rung = ladder.rungs.size() / 2;
+    const methods::Choice& choice = ladder.rungs[rung];
+    const PreparedMethod prepared(*choice.method, scene(), request().sources);
+    ReadySetting setting(prepared, choice.settings);
+    Profile::Curve curve{rung_name(ladder, rung), {}};
+    for (const Receiver& receiver : profile_.receivers) {
+      std::vector<double> values;
+      for (const methods::Estimate& one : setting.look_from(receiver)) values.push_back(one.form_factor);
+      curve.radiosity.push_back(radiosity(receiver, values));
+    }
+    profile_.others.push_back(std::move(curve));
+  }
+
+  const Study& study_;
+  std::span<const ExactSource> sources_;
+  const Hooks& hooks_;
+  std::vector<Rgb> radiosities_;
+  std::vector<std::vector<Sight>> sights_;
+  Profile profile_;
+};
+
 }  // namespace
 
 Sight sight_of(const FormFactor& result) {
   Sight sight = Sight::kNothing;
-  for (const PlaneRecord& plane : result.planes) sight = joined(sight, sight_of(plane.outcome));
+  for (const PlaneRecord& plane : result.planes) sight = joined(sight, sight_by(plane.outcome));
   return sight;
 }
 
@@ -66,6 +294,37 @@ std::vector<std::size_t> choose_receivers(const std::vector<ExactRow>& exact, st
 std::string_view to_string(Sight sight) {
   constexpr std::array<std::string_view, 4> kNames = {"faces away", "hidden", "partly hidden", "visible"};
   return kNames[static_cast<std::size_t>(sight)];
+}
+
+std::vector<Sight> sights(const Scene& scene, const Receiver& receiver, std::span<const ExactSource> sources) {
+  std::vector<Sight> result;
+  for (const ExactSource& source : sources) result.push_back(sight_of(exact_form_factor(scene, receiver, source)));
+  return result;
+}
+
+std::variant<ShadowEdges, LeftOut> find_shadow_edges(const Request& request, std::span<const ExactSource> sources,
+                                                     const Hooks& hooks) {
+  const auto leave_out = [](const char* why) { return LeftOut{"error by distance to the nearest shadow edge", why}; };
+  const Lattice* const lattice = lattice_of(request.receivers);
+  if (lattice == nullptr) return leave_out("the receivers are not one grid on one face");
+  Raster raster(request, *lattice);
+  if (!raster.complete()) return leave_out("the face is no quadrilateral");
+  raster.classify(sources, hooks);
+  const std::vector<Point> edges = raster.edges();
+  if (edges.empty()) return leave_out("what is visible is of one kind all over the face");
+  const Tree tree(edges);
+  ShadowEdges found{{}, raster.spacing()};
+  for (const Receiver& receiver : request.receivers) found.distance.push_back(nearest_distance(tree, receiver.point));
+  return found;
+}
+
+std::variant<Profile, LeftOut> find_profile(const Study& study, std::span<const ExactSource> sources,
+                                            const Hooks& hooks) {
+  EXACTFF_EXPECT(study.exact.size() == study.request.receivers.size());
+  const auto line = line_through_penumbra(study);
+  if (auto profile = line ? Profiler(study, sources, hooks).along(*line) : std::nullopt) return *std::move(profile);
+  return LeftOut{"penumbra profile",
+                 "the receivers are not one grid on one quadrilateral on which some see a source partly"};
 }
 
 }  // namespace exactff::study

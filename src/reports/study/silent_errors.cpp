@@ -9,6 +9,7 @@
 // These counts are for a report and use rounded coordinates. No value depends on them.
 #include "study/silent_errors.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

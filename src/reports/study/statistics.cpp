@@ -1,7 +1,6 @@
 #include "study/statistics.h"
 
-#include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -9,12 +8,6 @@
 
 namespace exactff::study {
 namespace {
-
-std::vector<double> finite_only(std::span<const double> values) {
-  std::vector<double> kept;
-  std::copy_if(values.begin(), values.end(), std::back_inserter(kept), [](double v) { return std::isfinite(v); });
-  return kept;
-}
 
 constexpr double kRoundingError = 1e-12;  // relative; smaller errors say nothing about a method
 
@@ -56,7 +49,8 @@ std::optional<Slope> slope(const Study& study, std::size_t ladder, Sight sight) 
 
 ErrorStatistics error_statistics(std::span<const double> errors) {
   ErrorStatistics result;
-  const std::vector<double> numbers = finite_only(errors);
+  std::vector<double> numbers;
+  std::ranges::copy_if(errors, std::back_inserter(numbers), [](double v) { return std::isfinite(v); });
   result.not_a_number = errors.size() - numbers.size();
   if (numbers.empty()) return result;
   std::vector<double> magnitudes = numbers;
@@ -85,12 +79,11 @@ LadderSlopes slopes_of(const Study& study, std::size_t ladder) {
 
 Summary summarise(const std::vector<SampleRow>& rows, const Study& study, double eps_b) {
   Summary summary;
-  std::vector<double> form_factor, radiosity, partly, silent;
+  std::vector<double> form_factor, radiosity, silent;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const SampleRow& row = rows[i];
     form_factor.push_back(row.error);
     radiosity.push_back(row.radiosity_error);
-    if (study.exact[i].sight == Sight::kPartly) partly.push_back(row.radiosity_error);
     if (!(std::abs(row.radiosity_error) <= eps_b)) ++summary.violations;
     summary.leaves += row.leaves;
     summary.rays += row.rays;
@@ -101,7 +94,6 @@ Summary summarise(const std::vector<SampleRow>& rows, const Study& study, double
   for (const std::size_t i : study.judged) silent.push_back(rows[i].silent_error);
   summary.form_factor = error_statistics(form_factor);
   summary.radiosity = error_statistics(radiosity);
-  summary.radiosity_partly = error_statistics(partly);
   summary.silent = error_statistics(silent);
   return summary;
 }

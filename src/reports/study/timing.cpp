@@ -9,17 +9,16 @@
 // microseconds, so short calls are measured on the steady clock: they are seldom interrupted, and a median leaves out
 // those that are. They follow a first call with the same arguments, and very short ones are repeated. Long calls need
 // no such warming up.
-#include "study/timing.h"
-
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <stdexcept>
 
 #include "files/parallel.h"
 #include "files/stopwatch.h"
 #include "kernel/statistics.h"
-#include "study/prepared_method.h"
+#include "study/runs.h"
 
 namespace exactff::study {
 namespace {
@@ -34,15 +33,11 @@ double overpriced(const methods::Method& method) { return method.all_sources_at_
 // Evaluates one setting, and knows how often to repeat it at each receiver.
 class Subject {
  public:
-  Subject(const PreparedMethod& prepared, const Settings& settings)
-      : evaluator_(prepared.scene->configure(settings)),
-        sources_(prepared.sources),
-        estimates_(prepared.sources.size()) {}
+  Subject(const PreparedMethod& prepared, const Settings& settings) : setting_(prepared, settings) {}
 
   [[nodiscard]] double value(const Receiver& receiver) {
-    evaluate(receiver);
     double sum = 0.0;
-    for (const methods::Estimate& estimate : estimates_) sum += estimate.form_factor;
+    for (const methods::Estimate& estimate : setting_.look_from(receiver)) sum += estimate.form_factor;
     return sum;
   }
 
@@ -52,16 +47,17 @@ class Subject {
     int& repeats = repeats_[place];
     if (repeats == 0 || repeats == kByProcessorTime) {
       const double start = files::thread_seconds();
-      const double once = files::seconds_of([&] { evaluate(receiver); }), of_thread = files::thread_seconds() - start;
+      const double once = files::seconds_of([&] { setting_.look_from(receiver); }),
+                   of_thread = files::thread_seconds() - start;
       if (repeats == 0) {
         repeats = once > kLong ? kByProcessorTime
                                : static_cast<int>(std::ceil(kShortest / std::max(kShortest / 100.0, once)));
       }
       if (repeats == kByProcessorTime) return of_thread;
     }
-    evaluate(receiver);  // what was called before may have taken the caches
+    setting_.look_from(receiver);  // what was called before may have taken the caches
     return files::seconds_of([&] {
-             for (int k = 0; k < repeats; ++k) evaluate(receiver);
+             for (int k = 0; k < repeats; ++k) setting_.look_from(receiver);
            }) /
            repeats;
   }
@@ -69,14 +65,7 @@ class Subject {
  private:
   static constexpr int kByProcessorTime = -1;
 
-  void evaluate(const Receiver& receiver) {
-    evaluator_->look_from(receiver);
-    evaluator_->form_factors(sources_, estimates_);
-  }
-
-  std::unique_ptr<methods::Evaluator> evaluator_;
-  std::span<const methods::PreparedSource* const> sources_;
-  std::vector<methods::Estimate> estimates_;
+  ReadySetting setting_;
   std::vector<int> repeats_;
 };
 

@@ -36,7 +36,7 @@
 #include "exactff/view_factors.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
-#include "report/plan.h"
+#include "report/verdicts.h"
 #include "stress/stress.h"
 #include "support/program.h"
 #include "support/random_scenes.h"

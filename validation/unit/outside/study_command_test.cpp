@@ -113,7 +113,7 @@ TEST_F(StudyCommand, ResumeLeavesTheResultOfAnotherRequestAlone) {
   const std::string one = line("Room A", "3x3");
   const std::vector<std::string> others = {line("Room A", "3x4"),
                                            line("Room B", "3x3"),
-                                           one + "experiment closure\n",
+                                           one + "experiment meshing\n",
                                            "title Other\n" + one,
                                            one.substr(0, one.size() - 1) + " --method wallace\n",
                                            one.substr(0, one.size() - 1) + " --method-budget 3\n"};
@@ -315,7 +315,7 @@ TEST_F(StudyCommand, NamesTheLineThatIsWrong) {
       {"scene --on floor --grid 2x2", "SCENE"},
       {"experiment karkanis-tims", "karkanis-times"},
       {"experiment --unless-abridged", "nothing but --unless-abridged"},
-      {"experiment closur --unless-abridged", "closure"},
+      {"experiment hemicub-scatter --unless-abridged", "hemicube-scatter"},
       {"scene @teapott --on floor --grid 2x2", "teapot"},
   };
   for (const auto& [wrong, named] : table) {
@@ -329,19 +329,19 @@ TEST_F(StudyCommand, NamesTheLineThatIsWrong) {
 }
 
 TEST_F(StudyCommand, LeavesExperimentsOutOfAbridgedReports) {
-  put(line("Room B", "2x2") + "experiment nettle-rule closure --unless-abridged\n");
+  put(line("Room B", "2x2") + "experiment meshing hemicube-scatter --unless-abridged\n");
   EXPECT_EQ(run(out_, {"--abridged"}), 0) << error_;
   const std::string page = text_of(out_ / "report.html");
-  EXPECT_NE(page.find("the experiment nettle-rule"), std::string::npos);
-  EXPECT_EQ(page.find("chapter-nettle-rule"), std::string::npos);
-  EXPECT_FALSE(fs::exists(out_ / "nettle-rule.csv"));
-  EXPECT_FALSE(fs::exists(out_ / "closure.csv"));
+  EXPECT_NE(page.find("the experiment meshing"), std::string::npos);
+  EXPECT_EQ(page.find("chapter-meshing"), std::string::npos);
+  EXPECT_FALSE(fs::exists(out_ / "meshing.csv"));
+  EXPECT_FALSE(fs::exists(out_ / "hemicube-scatter.csv"));
 }
 
 TEST_F(StudyCommand, NamesTheNearestExperiment) {
-  EXPECT_EQ(run(out_, {"--experiment", "closur"}), 2);
-  EXPECT_TRUE(said("there is no experiment 'closur'")) << error_;
-  EXPECT_TRUE(said("closure")) << error_;
+  EXPECT_EQ(run(out_, {"--experiment", "meshin"}), 2);
+  EXPECT_TRUE(said("there is no experiment 'meshin'")) << error_;
+  EXPECT_TRUE(said("meshing")) << error_;
 }
 
 TEST_F(StudyCommand, HasTheValuesOfTheLibraryCall) {
@@ -378,20 +378,20 @@ TEST_F(StudyCommand, ExperimentsNeedNoScene) {
   };
   EXPECT_EQ(compare({}), 2);
   EXPECT_TRUE(said("SCENE is required")) << error_;
-  EXPECT_EQ(compare({"--experiment", "closure", "--on", "floor"}), 2);
+  EXPECT_EQ(compare({"--experiment", "hemicube-scatter", "--on", "floor"}), 2);
   EXPECT_TRUE(said("without a scene: --on floor")) << error_;
-  EXPECT_EQ(compare({"--experiment", "closure", "--abridged"}), 0) << error_;
-  EXPECT_TRUE(fs::exists(out_ / "closure.csv"));
-  EXPECT_NE(text_of(out_ / "report.html").find("exactff compare --experiment closure"), std::string::npos);
+  EXPECT_EQ(compare({"--experiment", "hemicube-scatter", "--abridged"}), 0) << error_;
+  EXPECT_TRUE(fs::exists(out_ / "hemicube-scatter.csv"));
+  EXPECT_NE(text_of(out_ / "report.html").find("exactff compare --experiment hemicube-scatter"), std::string::npos);
 }
 
 TEST_F(StudyCommand, RunsAnExperimentOnceHoweverOftenItIsNamed) {
-  put("experiment closure closure\n");
-  EXPECT_EQ(run(out_, {"--abridged", "--experiment", "closure"}), 0) << error_;
+  put("experiment hemicube-scatter hemicube-scatter\n");
+  EXPECT_EQ(run(out_, {"--abridged", "--experiment", "hemicube-scatter"}), 0) << error_;
   const std::string report = text_of(out_ / "report.html");
-  const std::size_t first = report.find("id=\"chapter-closure\"");
+  const std::size_t first = report.find("id=\"chapter-hemicube-scatter\"");
   ASSERT_NE(first, std::string::npos);
-  EXPECT_EQ(report.find("id=\"chapter-closure\"", first + 1), std::string::npos);
+  EXPECT_EQ(report.find("id=\"chapter-hemicube-scatter\"", first + 1), std::string::npos);
   EXPECT_EQ(run(out_, {"--abridged", "--force"}), 0) << "an experiment's tables may be replaced\n" << error_;
 }
 

@@ -39,7 +39,7 @@ TEST_F(StudyFileReader, TakesTitleScenesAndExperiments) {
       "\n"
       "scene room.obj --on floor --title \"A room\"   # the small one\n"
       "\tscene\t@teapot\t--grid 2x2\r\n"
-      "experiment closure nettle-rule");
+      "experiment meshing karkanis-times");
   EXPECT_EQ(study.title, "Form factors of \"rooms\"");
   ASSERT_EQ(study.scenes.size(), 2U);
   EXPECT_EQ(study.scenes[0].number, 4U);
@@ -47,7 +47,7 @@ TEST_F(StudyFileReader, TakesTitleScenesAndExperiments) {
   EXPECT_EQ(study.scenes[1].words, (Words{"@teapot", "--grid", "2x2"}));
   ASSERT_EQ(study.experiments.size(), 1U);
   EXPECT_EQ(study.experiments[0].number, 6U);
-  EXPECT_EQ(study.experiments[0].words, (Words{"closure", "nettle-rule"}));
+  EXPECT_EQ(study.experiments[0].words, (Words{"meshing", "karkanis-times"}));
 }
 
 TEST_F(StudyFileReader, TellsEverythingThatIsWrongWithItsLine) {

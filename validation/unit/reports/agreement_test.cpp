@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "exactff/models.h"
-#include "report/figures.h"
 #include "report/plan.h"
 #include "report/report.h"
 #include "report/verdicts.h"

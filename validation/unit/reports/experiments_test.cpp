@@ -1,4 +1,6 @@
 // The experiments of the report, each on a scene that is small enough for a test, and their shared helpers.
+#include "experiments/experiments.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,17 +8,8 @@
 #include <functional>
 #include <string>
 
-#include "exactff/models.h"
 #include "exactff/scene_files.h"
-#include "experiments/closure.h"
-#include "experiments/experiment.h"
-#include "experiments/gradient_differences.h"
-#include "experiments/hemicube_resolution.h"
-#include "experiments/hemicube_scatter.h"
-#include "experiments/karkanis_times.h"
-#include "experiments/meshing.h"
-#include "experiments/nettle_rule.h"
-#include "experiments/small_emitters.h"
+#include "kernel/statistics.h"
 #include "page/plot_script.h"
 
 namespace exactff::experiments {
@@ -27,31 +20,20 @@ const Hooks kNoHooks;
 // --- what they share -----------------------------------------------------------------------------------
 
 TEST(Experiments, AreFoundByNameAndNearlyByAnother) {
-  ASSERT_EQ(all_experiments().size(), 9U);
+  ASSERT_EQ(all_experiments().size(), 4U);
   for (const Experiment& e : all_experiments()) EXPECT_EQ(&experiment_named(e.name), &e);
   try {
-    (void)experiment_named("nettle");
+    (void)experiment_named("karkanis");
     FAIL() << "there is none of that name";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("nettle-rule"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("karkanis-times"), std::string::npos) << error.what();
   }
 }
 
-TEST(Experiments, AMeanSlopeHasStudentsInterval) {
-  const std::vector<double> slopes = {-1.0, -2.0, -3.0};
-  const SlopeFit fit = mean_slope(slopes);
-  EXPECT_DOUBLE_EQ(fit.slope, -2.0);
-  EXPECT_NEAR(fit.half_width, 4.3027 / std::sqrt(3.0), 1e-3);  // t of 2 degrees of freedom, standard deviation 1
-  EXPECT_EQ(to_text(fit), "−2.00 ± 2.48");
+TEST(Experiments, WriteSlopesWithTwoDecimals) {
   EXPECT_EQ(slope_text(0.996), "1.00");
+  EXPECT_EQ(slope_text(-0.756), "−0.76");
   EXPECT_EQ(slope_text(-0.001), "0.00");
-}
-
-TEST(Experiments, TellWhereABrokenLineReachesAValue) {
-  const Points line = {{1.0, 1.0}, {10.0, 100.0}, {100.0, 100.0}};
-  EXPECT_NEAR(reaches(line, 10.0).value(), std::sqrt(10.0), 1e-12);
-  EXPECT_FALSE(reaches(line, 1000.0));
-  EXPECT_FALSE(reaches(line, 0.1));
 }
 
 // A floor and a wall that meet, and a lamp above the floor.
@@ -88,40 +70,10 @@ std::vector<SmallRun> small_runs() {
   const auto scatter = [](int threads, const Hooks& hooks) {
     return hemicube_scatter(ScatterSize{.scenes = 3, .triangles = 30, .resolutions = {20}}, threads, hooks);
   };
-  const auto resolution = [](int threads, const Hooks& hooks) {
-    ResolutionSize size{.resolutions = {16, 32}, .rotations = {0, 45}, .distances = {1, 2, 4}};
-    size.groups = 2;
-    size.triangles = 20;
-    size.places = 2;
-    return hemicube_resolution(size, threads, hooks);
-  };
-  const auto nettle = [](int threads, const Hooks& hooks) {
-    NettleSize size{.sides = {0.05, 0.1, 0.5}, .splits = {1, 2}, .rays = 4, .groups = 2};
-    size.configurations = 3;
-    size.orientations = 20;
-    return nettle_rule(size, threads, hooks);
-  };
-  const auto emitters = [](int threads, const Hooks& hooks) {
-    return small_emitters(EmittersSize{.lamps = 4, .grid = 3, .timed = 1, .choices = {"hemicube", "nettle:rays=4"}},
-                          threads, hooks);
-  };
-  const auto room = [](int threads, const Hooks& hooks) {
-    return closure(ClosureSize{.receivers = 4, .choices = {"hemicube", "nettle:rays=4"}}, threads, hooks);
-  };
-  const auto differences = [](int threads, const Hooks& hooks) {
-    return gradient_differences(
-        DifferencesSize{.receivers = 3, .steps = {0.01, 1e-4}, .choices = {"exact"}, .timed = 1}, threads, hooks);
-  };
   const auto cells = [](int threads, const Hooks& hooks) {
     return meshing(corner(), MeshingSize{.parts = {1, 2}, .pixels = 6}, threads, hooks);
   };
-  return {{"differences", differences},
-          {"scatter", scatter},
-          {"resolution", resolution},
-          {"nettle", nettle},
-          {"emitters", emitters},
-          {"room", room},
-          {"cells", cells}};
+  return {{"scatter", scatter}, {"cells", cells}};
 }
 
 TEST(Experiments, GiveTheSameBytesOfValuesForAnyNumberOfThreads) {
@@ -178,7 +130,7 @@ TEST(HemicubeScatter, TheErrorFallsAsTheFormFactorGrows) {
   const ScatterSize size{.scenes = 3, .triangles = 150, .resolutions = {100}};
   const std::vector<double> slopes = scatter_slopes(scatter_points(size, 1, kNoHooks), size, 0);
   ASSERT_EQ(slopes.size(), 3U);
-  const double slope = mean_slope(slopes).slope;
+  const double slope = kernel::mean(slopes);
   EXPECT_LT(slope, -0.4);
   EXPECT_GT(slope, -1.1);
 }
@@ -187,22 +139,6 @@ TEST(HemicubeScatter, DrawsWhatIsMissedApart) {
   const Result result = hemicube_scatter(ScatterSize{.scenes = 1, .triangles = 100, .resolutions = {20}}, 1, kNoHooks);
   ASSERT_EQ(result.figures.size(), 2U);
   for (const page::Figure& figure : result.figures) EXPECT_NE(figure.script.find("missed"), std::string::npos);
-}
-
-// --- resolution, rotation, distance --------------------------------------------------------------------
-
-TEST(HemicubeResolution, SlopesAreThoseOfCountingPixels) {
-  ResolutionSize size{.resolutions = {16, 32, 64, 128, 256}, .rotations = {0, 20, 45}, .distances = {1, 2, 4, 8}};
-  size.groups = 4;
-  size.triangles = 60;
-  size.places = 8;
-  const ResolutionCurves curves = resolution_curves(size, 1, kNoHooks);
-  EXPECT_NEAR(curves.triangles_by_resolution.slope(1e9).slope, -1.5, 0.2);
-  EXPECT_NEAR(curves.aligned_by_resolution.slope(1e9).slope, -1.0, 0.3);
-  EXPECT_LT(curves.turned_by_resolution.slope(1e9).slope, curves.aligned_by_resolution.slope(1e9).slope - 0.3);
-  EXPECT_GT(curves.light_by_rotation.rms[0], 2.0 * curves.light_by_rotation.rms[1]);
-  EXPECT_GT(curves.light_by_rotation.rms[2], 2.0 * curves.light_by_rotation.rms[1]);
-  EXPECT_GT(curves.turned_by_distance.slope(1e9).slope, 1.0);
 }
 
 // --- times ---------------------------------------------------------------------------------------------
@@ -226,83 +162,11 @@ TEST(KarkanisTimes, NamesWhatTheBudgetLeavesOut) {
   TimesSize size{.triangles = {10, 20, 40}};
   size.budget = 0.0;
   size.rays = 4;
-  size.affordable = {1};
-  size.affordable_at = 20;
   const Result result = karkanis_times(size, kNoHooks);
   ASSERT_EQ(result.left_out.size(), 1U);
   EXPECT_NE(result.left_out[0].what.find("20 and 40"), std::string::npos) << result.left_out[0].what;
   ASSERT_EQ(result.values.size(), 1U);
   EXPECT_EQ(result.values[0].csv, karkanis_times(size, kNoHooks).values[0].csv);
-}
-
-// --- Nettle --------------------------------------------------------------------------------------------
-
-const NettleCurve& curve(const std::vector<NettleCurve>& curves, NettleCase kind, int splits) {
-  return *std::ranges::find_if(curves, [&](const NettleCurve& c) { return c.kind == kind && c.splits == splits; });
-}
-
-NettleSize small_nettle() {
-  NettleSize size{.sides = {0.02, 0.04, 0.08, 0.3}, .splits = {1, 4}, .rays = 16, .groups = 4};
-  size.configurations = 8;
-  return size;
-}
-
-TEST(NettleRule, SlopesAreTwoWithoutOcclusionOneWithTheExactFractionAndNoneWithRays) {
-  const std::vector<NettleCurve> curves = nettle_curves(small_nettle(), 1, kNoHooks);
-  EXPECT_NEAR(curve(curves, NettleCase::kFree, 1).slope().slope, 2.0, 0.02);
-  EXPECT_NEAR(curve(curves, NettleCase::kExactV, 1).slope().slope, 1.0, 0.1);
-  EXPECT_LT(curve(curves, NettleCase::kRayV, 1).slope().slope, 0.5);
-}
-
-TEST(NettleRule, GroupsAreIndependent) {
-  const NettleCurve free = nettle_curves(small_nettle(), 1, kNoHooks).front();
-  ASSERT_EQ(free.rms_by_group.size(), 4U);
-  EXPECT_NE(free.rms_by_group[0].front(), free.rms_by_group[1].front());
-  EXPECT_NE(free.rms_by_group[0].front(), free.rms_by_group[3].front());
-}
-
-TEST(NettleRule, SplittingDividesTheErrorByTheNumberOfParts) {
-  const std::vector<NettleCurve> curves = nettle_curves(small_nettle(), 1, kNoHooks);
-  const double whole = curve(curves, NettleCase::kFree, 1).rms.front();
-  const double split = curve(curves, NettleCase::kFree, 4).rms.front();
-  EXPECT_NEAR(whole / split, 16.0, 0.5);
-}
-
-TEST(NettleRule, TheLiteralTextIsPerAreaAndKnowsNoDirection) {
-  NettleSize size = small_nettle();
-  size.orientations = 200;
-  const NettleLiteral row = nettle_literal(size, 1, kNoHooks).front();
-  EXPECT_NEAR(row.sender_over_receiver * row.side * row.side, 1.0, 0.01);
-  EXPECT_NEAR(row.receiver_over_sender * row.side * row.side, 1.0, 0.01);
-  EXPECT_NEAR(row.in_tenths / row.sender_over_receiver, 0.01, 1e-4);
-  const TurnedAway turned = nettle_turned_away(size);
-  EXPECT_EQ(turned.pairs, 200U);
-  EXPECT_NEAR(static_cast<double>(turned.zero), 150.0, 25.0);
-  EXPECT_EQ(turned.literal_positive, turned.zero);
-}
-
-// --- finite differences ---
-
-// Those of exact values come near the derivative, since nothing but rounding disturbs a small step; those of samples
-// are far from it at every step, and the worse the smaller it is.
-TEST(GradientDifferences, OfExactValuesComeNearAndThoseOfSamplesDoNot) {
-  const DifferencesSize size{.receivers = 12,
-                             .steps = {0.1, 1e-3, 1e-5},
-                             .choices = {"exact", "area-sampling:samples=64,pattern=random"},
-                             .timed = 1};
-  const DifferencesStudy study = differences_study(size, 1, kNoHooks);
-  ASSERT_EQ(study.errors.size(), 4U);
-  EXPECT_GT(study.receivers, 12U);
-  for (const DifferenceErrors& errors : study.errors) {
-    const double least = errors.rms[errors.best()];
-    if (errors.choice == "exact") {
-      EXPECT_EQ(errors.best(), 2U) << errors.scene;
-      EXPECT_LT(least, 1e-6) << errors.scene;
-    } else {
-      EXPECT_GT(least, 1e-2) << errors.scene;
-      EXPECT_GT(errors.rms[2], 10.0 * errors.rms[1]) << errors.scene;
-    }
-  }
 }
 
 // --- cells of one radiosity ---
@@ -366,42 +230,6 @@ TEST(Meshing, InAFurnaceCellsDoNotMatter) {
   EXPECT_LT(study.levels.front().all.worst, 1e-3);
   EXPECT_NEAR(study.levels.front().all.mean_ratio, 1.0, 1e-3);
   EXPECT_LT(study.reference.half_width, 0.05);
-}
-
-// --- emitters, closure ---------------------------------------------------------------------------------
-
-TEST(SmallEmitters, ExactHasNoErrorAndTheHemicubeTheLargest) {
-  const EmittersSize size{.lamps = 9, .grid = 4, .choices = {"exact", "hemicube", "adaptive:eps_B=0.001"}};
-  const EmitterStudy study = emitter_study(size, 1, kNoHooks);
-  ASSERT_EQ(study.methods.size(), 3U);
-  EXPECT_GT(study.mean, 0.0);
-  EXPECT_EQ(study.methods[0].worst, 0.0);
-  EXPECT_GT(study.methods[2].rms, 0.0);
-  EXPECT_GT(study.methods[1].rms, 10.0 * study.methods[2].rms);
-  EXPECT_GE(study.methods[1].worst, study.methods[1].rms);
-}
-
-TEST(SmallEmitters, TheRadiosityIsThatOfAllLamps) {
-  const EmitterStudy study = emitter_study({.lamps = 4, .grid = 3, .choices = {}}, 1, kNoHooks);
-  const Scene hall = models::make_scene("emitters:n=4");
-  for (std::size_t i = 0; i < study.receivers.size(); ++i) {
-    const Receiver& receiver = study.receivers[i];
-    double sum = 0.0;
-    for (const Selection& lamp : hall.emitters()) {
-      sum += hall.source_radiosity(lamp).r * exact_form_factor(hall, receiver, ExactSource(hall, lamp)).value;
-    }
-    EXPECT_DOUBLE_EQ(study.exact[i], hall.receiver_reflectance(receiver.on).r * sum);
-  }
-}
-
-TEST(Closure, ExactBallsHoldOneAndTheHemicubeClosesThoughItsValuesErr) {
-  const ClosureStudy study = closure_study({.receivers = 5, .choices = {"hemicube", "nettle:rays=4"}}, 1, kNoHooks);
-  EXPECT_EQ(study.receivers, 5U);
-  EXPECT_EQ(study.hold_one, 5U);
-  EXPECT_LT(study.widest, 1e-14);
-  EXPECT_LT(study.methods[0].worst, 1e-12);
-  EXPECT_GT(study.methods[0].single_rms, 1e-5);
-  EXPECT_GT(study.methods[1].rms, 1e-3);
 }
 
 // --- the plot they need --------------------------------------------------------------------------------

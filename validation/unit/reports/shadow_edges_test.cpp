@@ -1,6 +1,4 @@
 // Where shadows end on a grid of receivers, and profiles across them.
-#include "study/shadow_edges.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,8 +9,8 @@
 #include <vector>
 
 #include "exactff/study.h"
-#include "study/ladders.h"
-#include "study/profile.h"
+#include "study/settings.h"
+#include "study/sight.h"
 #include "unit/reports/study_support.h"
 
 namespace exactff::study {

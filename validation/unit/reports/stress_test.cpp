@@ -9,11 +9,8 @@
 #include <set>
 #include <sstream>
 
-#include "stress/closed_form.h"
-#include "stress/double_formulas.h"
-#include "stress/family.h"
-#include "stress/report.h"
-#include "stress/stage.h"
+#include "stress/families.h"
+#include "stress/formulas.h"
 #include "support/program.h"
 
 namespace exactff::stress {

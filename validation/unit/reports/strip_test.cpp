@@ -1,9 +1,8 @@
 // The pictures of a scene's chapter.
-#include "report/strip.h"
-
 #include <gtest/gtest.h>
 
 #include "exactff/models.h"
+#include "report/report.h"
 #include "unit/reports/study_support.h"
 
 namespace exactff::report {

@@ -10,11 +10,9 @@
 #include <vector>
 
 #include "exactff/study.h"
-#include "study/budget.h"
-#include "study/ladders.h"
+#include "study/runs.h"
 #include "study/settings.h"
 #include "study/sight.h"
-#include "study/timing.h"
 #include "support/complaint.h"
 #include "unit/reports/study_support.h"
 

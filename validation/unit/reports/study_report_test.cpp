@@ -11,9 +11,7 @@
 
 #include "page/gnuplot.h"
 #include "page/output_folder.h"
-#include "report/figures.h"
 #include "report/report.h"
-#include "report/tables.h"
 #include "support/folder.h"
 #include "support/program.h"
 #include "unit/reports/study_support.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "exactff/study.h"
-#include "report/tables.h"
+#include "report/report.h"
 
 namespace exactff::validation {
 
@@ -92,7 +92,8 @@ inline std::string text_of(const report::StudyTable& table, const study::Study& 
 inline std::map<std::string, std::string> value_tables(const study::Study& study) {
   std::map<std::string, std::string> texts;
   for (const report::StudyTable& table : report::tables()) {
-    if (table.kind == report::Holds::kValues && table.has_rows(study)) texts.emplace(table.file, text_of(table, study));
+    if (table.file.ends_with("timings.csv") || !table.has_rows(study)) continue;
+    texts.emplace(table.file, text_of(table, study));
   }
   return texts;
 }

@@ -11,8 +11,8 @@
 #include <string_view>
 #include <utility>
 
-#include "report/tables.h"
-#include "study/radiosity.h"
+#include "report/report.h"
+#include "study/statistics.h"
 #include "unit/reports/study_support.h"
 
 namespace exactff::study {

@@ -9,10 +9,9 @@
 #include <vector>
 
 #include "exactff/study.h"
-#include "report/figures.h"
-#include "report/plan.h"
+#include "report/report.h"
 #include "report/verdicts.h"
-#include "study/ladders.h"
+#include "study/settings.h"
 
 namespace exactff::study {
 namespace {
@@ -126,10 +125,9 @@ TEST_F(Verdicts, AreDrawnWithWhatTheyRecommend) {
   add_exact();
   for (int k = 1; k <= 9; ++k) add("area-sampling:samples=" + std::to_string(k), {{0.3, 2e-4}});
   add("nettle:variant=literal,splits=1|2", {{0.1, 5e-5}, {0.05, 9e-5}});
-  std::vector<page::Figure> figures;
   std::vector<LeftOut> left_out;
   study_.methods.slopes.resize(study_.methods.ladders.size());
-  report::add_method_figures(study_, figures, left_out);
+  const std::vector<page::Figure> figures = report::figures(study_, left_out);
   ASSERT_FALSE(figures.empty());
   ASSERT_EQ(figures.front().id, "methods-time");
   EXPECT_NE(figures.front().script.find("nettle, literal"), std::string::npos);

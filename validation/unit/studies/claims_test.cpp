@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "experiments/karkanis_times.h"
+#include "experiments/experiments.h"
 #include "studies/honesty.h"
 #include "studies/view_factors.h"
 #include "studies/whole_view_times.h"

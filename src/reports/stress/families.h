@@ -1,5 +1,5 @@
-// Builds a stiff scene: one receiver, one patch `source`, one patch `occluder`, and the closed form that the result
-// must agree with.
+// The families of stiff scenes. A family is a list of stiffnesses and a function that makes the scene for one of them:
+// one receiver, one patch `source`, one patch `occluder`, and the closed form that the result must agree with.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,8 @@
 
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
-#include "stress/closed_form.h"
+#include "stress/formulas.h"
+#include "stress/stress.h"
 
 namespace exactff::stress {
 
@@ -98,5 +99,12 @@ struct PlateBeforeSource {
   double plate_z;
 };
 [[nodiscard]] Case plate_before_source(double stiffness, const PlateBeforeSource& p);
+
+struct Family {
+  FamilyInfo info;
+  std::vector<double> stiffnesses;  // ascending
+  Case (*make)(double stiffness);
+};
+[[nodiscard]] const std::vector<Family>& all_families();  // in the order of the report
 
 }  // namespace exactff::stress

@@ -7,24 +7,25 @@
 //      factor: the choice of a user who knows roughly what to expect.
 //   5. Measure times: the median of several calls within a time limit.
 // The place of a scene in the report is its index, so that nothing but the times depends on the number of threads.
+#include "stress/stress.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <span>
 
 #include "exactff/adaptive.h"
 #include "files/parallel.h"
 #include "files/stopwatch.h"
 #include "kernel/ball.h"
 #include "kernel/float_environment.h"
-#include "stress/double_formulas.h"
-#include "stress/family.h"
+#include "stress/families.h"
+#include "stress/formulas.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
 namespace exactff::stress {
-
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -47,17 +48,6 @@ double median_seconds(const Compute& compute) {
   return files::median_seconds(compute, kMostCalls, kLimit);
 }
 
-AngleFormula formula_of(Method method) {
-  switch (method) {
-    case Method::kAcos:
-      return AngleFormula::kAcos;
-    case Method::kAtan2:
-      return AngleFormula::kAtan2;
-    default:
-      return AngleFormula::kAtan2Difference;
-  }
-}
-
 class Trial {
  public:
   Trial(const Case& scene_case, Row& row)
@@ -67,7 +57,9 @@ class Trial {
     row_.stiffness = case_.stiffness;
     row_.occluders = case_.scene.faces().size() - 1;
     run_exact();
-    for (Method method : {Method::kAcos, Method::kAtan2, Method::kAtan2Difference}) run_formula(method);
+    run_formula(Method::kAcos, AngleFormula::kAcos);
+    run_formula(Method::kAtan2, AngleFormula::kAtan2);
+    run_formula(Method::kAtan2Difference, AngleFormula::kAtan2Difference);
     run_adaptive();
   }
 
@@ -109,10 +101,10 @@ class Trial {
     return polygons;
   }
 
-  void run_formula(Method method) {
+  void run_formula(Method method, AngleFormula formula) {
     if (polygons_.empty()) polygons_ = region();
     const auto compute = [&] {
-      return form_factor_in_double(polygons_, case_.receiver.point, case_.receiver.normal, formula_of(method));
+      return form_factor_in_double(polygons_, case_.receiver.point, case_.receiver.normal, formula);
     };
     constexpr int kCalls = 32;  // a single call is shorter than the resolution of the clock
     const double value = compute();
@@ -193,6 +185,39 @@ void keep_finished(std::span<const std::atomic<std::size_t>> rows, Report& repor
   report.families = std::move(kept);
 }
 
+// --- judgement ---
+
+struct MethodNames {
+  std::string_view name, short_name;
+};
+// Indexed by Method.
+constexpr std::array<MethodNames, kMethodCount> kMethodNames = {
+    {{"exact", "exact"},
+     {"Eq. (4) in double on the exact region, acos", "acos"},
+     {"Eq. (4) in double on the exact region, atan2", "atan2"},
+     {"Eq. (4) in double on the exact region, atan2 with a × (b − a)", "atan2-difference"},
+     {"Tampieri's algorithm as mended", "tampieri"},
+     {"Tampieri's algorithm as printed", "tampieri-literal"}}};
+
+// The largest stiffness such that all rows up to it are good; 0 if the first one is not.
+template <class IsGood>
+double good_up_to(const FamilyResult& result, const IsGood& is_good) {
+  const auto bad = std::ranges::find_if_not(result.rows, is_good);
+  return bad == result.rows.begin() ? 0.0 : std::prev(bad)->stiffness;
+}
+
+std::string words_of(const FamilyResult& result, double reach) {
+  return !result.rows.empty() && reach == result.rows.back().stiffness ? "all" : stiffness_text(reach);
+}
+
+// Whether the method refuses the scene after the last one at which it is good enough.
+bool next_is_refused(const FamilyResult& result, Method method, double reach) {
+  for (const Row& row : result.rows) {
+    if (row.stiffness > reach) return row.of(method).refused;
+  }
+  return false;
+}
+
 }  // namespace
 
 Report run(Request request, const Hooks& hooks) {
@@ -221,6 +246,79 @@ Report run(Request request, const Hooks& hooks) {
     keep_finished(finished, report);
   }
   return report;
+}
+
+std::string_view to_string(Evidence evidence) {
+  constexpr std::array<std::string_view, 3> kNames = {"closed form", "symmetry", "certified enclosure"};
+  return kNames[static_cast<std::size_t>(evidence)];
+}
+
+std::string_view name_of(Method method) { return kMethodNames[static_cast<std::size_t>(method)].name; }
+std::string_view short_name_of(Method method) { return kMethodNames[static_cast<std::size_t>(method)].short_name; }
+
+const std::vector<FamilyInfo>& families() {
+  static const std::vector<FamilyInfo> list = [] {
+    std::vector<FamilyInfo> infos;
+    for (const Family& family : all_families()) infos.push_back(family.info);
+    return infos;
+  }();
+  return list;
+}
+
+double usable_up_to(const FamilyResult& result, Method method, double threshold) {
+  return good_up_to(result, [&](const Row& row) { return row.of(method).error < threshold; });  // not NaN
+}
+
+bool has_tolerance(Method method) { return method == Method::kAdaptive || method == Method::kAdaptiveLiteral; }
+
+double kept_up_to(const FamilyResult& result, Method method) {
+  return good_up_to(result, [&](const Row& row) {
+    const Answer& answer = row.of(method);
+    const double error = std::abs(answer.value - row.truth.nearest().value_or(row.truth.lower()));
+    return !answer.refused && error <= row.tolerance;  // not NaN
+  });
+}
+
+bool Report::sound() const {
+  return std::all_of(families.begin(), families.end(), [](const FamilyResult& family) {
+    return std::all_of(family.rows.begin(), family.rows.end(),
+                       [](const Row& row) { return row.agrees && row.status != Status::kNotCertified; });
+  });
+}
+
+std::string stiffness_text(double stiffness) {
+  if (stiffness == 0.0) return "–";
+  constexpr double kSmallEnoughToWrite = 1e4;
+  if (stiffness < kSmallEnoughToWrite) return text::shortest(stiffness);
+  int exponent = 0;
+  if (std::frexp(stiffness, &exponent) == 0.5) return "2" + text::superscript(exponent - 1);
+  const int decade = static_cast<int>(std::lround(std::log10(stiffness)));
+  if (std::stod("1e" + std::to_string(decade)) == stiffness) return "10" + text::superscript(decade);
+  return text::rounded(stiffness);
+}
+
+std::string error_text(const Answer& answer) {
+  if (answer.refused) return "refused";
+  if (std::isnan(answer.error)) return "no number";
+  return answer.error == 0.0 ? "0" : text::rounded(answer.error, 2);
+}
+
+std::string reach_text(const FamilyResult& result, Method method, double threshold) {
+  return words_of(result, usable_up_to(result, method, threshold));
+}
+
+std::string reaches_text(const FamilyResult& result, Method method) {
+  std::string text;
+  double reach = kept_up_to(result, method);
+  if (has_tolerance(method)) {
+    text = words_of(result, reach);
+  } else {
+    reach = usable_up_to(result, method, kThresholds.front());
+    for (const double threshold : kThresholds)
+      text += (text.empty() ? "" : " · ") + reach_text(result, method, threshold);
+    if (text == "all · all · all") return "all";
+  }
+  return next_is_refused(result, method, reach) ? text + " (refused)" : text;
 }
 
 }  // namespace exactff::stress

@@ -1,5 +1,6 @@
-// The form factor from the origin to axis-aligned rectangles, by the closed form of Howell's catalogue: the true value
-// that stiff scenes are compared with. It is independent of visibility, clipping and Eq. (4).
+// Two ways to compute the form factors of stiff scenes. The true value: the form factor from the origin to axis-aligned
+// rectangles, by the closed form of Howell's catalogue, independent of visibility, clipping and Eq. (4). And what
+// programs do: Eq. (4) in plain double.
 //
 // For a rectangle [u1,u2] x [v1,v2] in the plane w = +-h, h > 0, Lambert's vector is
 //   L_u = D Hu,  L_v = D Hv,  L_w = +-D G,    D f = f(u2,v2) - f(u1,v2) - f(u2,v1) + f(u1,v1),
@@ -10,6 +11,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "exactff/enclosure.h"
@@ -56,5 +59,25 @@ class ClosedForm {
   std::array<Rational, 3> normal_;
   std::vector<Term> terms_;
 };
+
+// --- Eq. (4) in double ---
+//
+// Eq. (4) of F. Tampieri (1992) in plain double, in the three forms that programs use: the results of careful and of
+// careless code. Each estimates the form factor of a region from its boundary.
+
+enum class AngleFormula {
+  kAcos,             // unit vectors a and b, acos(a . b), a x b
+  kAtan2,            // atan2(|a x b|, a . b)
+  kAtan2Difference,  // the same, but a x b is computed as a x (b - a)
+};
+
+// A closed polygon, counter-clockwise seen from the front of the source; holes are clockwise.
+using Polygon = std::vector<Vec3>;
+
+// -1/(2 pi |n|) times the sum over the edges of angle n . (a x b) / |a x b|, with a and b relative to x. Nothing is
+// clamped, but the angle of two unit vectors is 0 or pi if their product rounds beyond 1. An edge with a x b = 0 adds
+// nothing.
+[[nodiscard]] double form_factor_in_double(std::span<const Polygon> region, const Vec3& x, const Vec3& normal,
+                                           AngleFormula formula);
 
 }  // namespace exactff::stress
