@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "kernel/expect.h"
-#include "text/characters.h"
 #include "text/encoding.h"
 #include "text/refuse.h"
 

@@ -4,7 +4,7 @@
 #include <system_error>
 
 #include "exactff/error.h"
-#include "text/characters.h"
+#include "text/encoding.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/number_text.h"
 
 namespace exactff::text {

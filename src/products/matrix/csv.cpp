@@ -4,7 +4,7 @@
 
 #include "exactff/version.h"
 #include "text/csv_row.h"
-#include "text/fnv1a.h"
+#include "text/hashes.h"
 #include "text/phrases.h"
 
 namespace exactff::matrix {

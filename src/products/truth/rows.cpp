@@ -8,11 +8,11 @@
 
 #include "exactff/version.h"
 #include "files/parallel.h"
-#include "kernel/exact_vec.h"
-#include "scene/misuse.h"
+#include "kernel/numbers.h"
+#include "scene/scene.h"
 #include "text/csv_row.h"
 #include "text/escape.h"
-#include "text/fnv1a.h"
+#include "text/hashes.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 

@@ -14,7 +14,6 @@
 #include "radiosity/gather.h"
 #include "truth/unit_normal.h"
 #include "whole_view/light.h"
-#include "whole_view/source_factors.h"
 
 namespace exactff::truth {
 

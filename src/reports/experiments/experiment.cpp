@@ -10,7 +10,7 @@
 #include "experiments/meshing.h"
 #include "experiments/nettle_rule.h"
 #include "experiments/small_emitters.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 

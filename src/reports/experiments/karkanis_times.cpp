@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "files/parallel.h"
-#include "page/figure.h"
+#include "page/chapter.h"
 #include "text/phrases.h"
 
 namespace exactff::experiments {

@@ -6,7 +6,7 @@
 #include "exactff/models.h"
 #include "files/parallel.h"
 #include "kernel/statistics.h"
-#include "page/figure.h"
+#include "page/chapter.h"
 #include "study/statistics.h"
 #include "text/phrases.h"
 

@@ -12,7 +12,7 @@
 #include "exactff/exact.h"
 #include "exactff/methods.h"
 #include "experiments/experiment.h"
-#include "page/plot_script.h"
+#include "page/gnuplot.h"
 #include "study/prepared_method.h"
 #include "text/csv_row.h"
 

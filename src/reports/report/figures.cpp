@@ -8,7 +8,7 @@
 
 #include "kernel/statistics.h"
 #include "kernel/vec.h"
-#include "page/plot_script.h"
+#include "page/gnuplot.h"
 #include "report/strip.h"
 #include "report/verdicts.h"
 #include "study/ladders.h"

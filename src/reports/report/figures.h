@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "page/figure.h"
+#include "page/chapter.h"
 #include "report/studies.h"
 
 namespace exactff::report {

@@ -5,7 +5,7 @@
 #include "exactff/version.h"
 #include "files/file.h"
 #include "page/output_folder.h"
-#include "text/fnv1a.h"
+#include "text/hashes.h"
 
 namespace exactff::report {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <map>
 
-#include "page/plot_script.h"
+#include "page/gnuplot.h"
 #include "report/figures.h"
 #include "report/verdicts.h"
 #include "study/statistics.h"

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "page/chapter.h"
-#include "page/figure.h"
 #include "report/strip.h"
 #include "report/studies.h"
 #include "report/tables.h"

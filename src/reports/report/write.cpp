@@ -3,7 +3,7 @@
 #include "files/file.h"
 #include "files/parallel.h"
 #include "kernel/float_environment.h"
-#include "page/figure.h"
+#include "page/chapter.h"
 #include "page/output_folder.h"
 #include "report/figures.h"
 #include "report/report.h"

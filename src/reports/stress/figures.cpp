@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "page/plot_script.h"
+#include "page/gnuplot.h"
 #include "stress/report.h"
 #include "text/phrases.h"
 

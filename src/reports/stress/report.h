@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "page/figure.h"
+#include "page/chapter.h"
 #include "stress/stress.h"
 
 namespace exactff::stress {

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "kernel/expect.h"
-#include "methods/adaptive_settings.h"
+#include "methods/adaptive.h"
 #include "study/ladders.h"
 #include "study/settings.h"
 #include "study/sight.h"

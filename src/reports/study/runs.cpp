@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "files/parallel.h"
-#include "methods/adaptive_settings.h"
+#include "methods/adaptive.h"
 #include "study/radiosity.h"
 #include "study/settings.h"
 #include "study/sight.h"

@@ -17,7 +17,7 @@
 #include "experiments/meshing.h"
 #include "experiments/nettle_rule.h"
 #include "experiments/small_emitters.h"
-#include "page/plot_script.h"
+#include "page/gnuplot.h"
 
 namespace exactff::experiments {
 namespace {
