@@ -193,7 +193,7 @@ class Scene {
 
  private:
   // The library's own sources reach the private parts of a public class through a friend. A private header defines it:
-  // here scene/scene_data.h.
+  // here scene/scene.h.
   friend struct SceneInside;
   friend class SceneBuilder;
   struct Data;

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "adaptive/vec.h"
+#include "adaptive/sub_patch.h"
 #include "kernel/filter.h"
 #include "kernel/reals.h"
 

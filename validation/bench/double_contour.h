@@ -4,7 +4,7 @@
 #include <span>
 
 #include "exactff/geometry.h"
-#include "visibility/boundary_piece.h"
+#include "visibility/outlines.h"
 #include "visibility/visible_edges.h"
 
 namespace exactff::bench {

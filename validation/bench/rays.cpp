@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "adaptive/embree.h"
-#include "adaptive/vec.h"
+#include "adaptive/sub_patch.h"
 #include "bench/scenes.h"
 #include "bench/subjects.h"
 #include "generate/random.h"

@@ -12,7 +12,7 @@
 #include "exactff/models.h"
 #include "exactff/receiver.h"
 #include "exactff/scene_files.h"
-#include "scene/connectedness.h"
+#include "scene/edges.h"
 #include "scene/shaft_tree.h"
 
 namespace exactff::bench {

@@ -8,7 +8,7 @@
 
 #include "generate/families.h"
 #include "generate/random.h"
-#include "scene/connectedness.h"
+#include "scene/edges.h"
 #include "scene/shaft_tree.h"
 
 namespace exactff::bench {

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "adaptive/vec.h"
+#include "adaptive/sub_patch.h"
 #include "exact/source_planes.h"
 #include "visibility/visible_boundary.h"
 

@@ -5,7 +5,7 @@
 
 #include "bench/double_contour.h"
 #include "bench/scenes.h"
-#include "visibility/boundary_piece.h"
+#include "visibility/outlines.h"
 
 namespace exactff::bench {
 

@@ -32,7 +32,7 @@ using Corners = std::vector<Vec3>;
 class Lattice {
  public:
   explicit Lattice(Random& random) : random_(random) {
-    // Where all coordinates are multiples of 2^31 - 1, normals vanish modulo this prime (scene/planes.cpp).
+    // Where all coordinates are multiples of 2^31 - 1, normals vanish modulo this prime (scene/panels.cpp).
     scale_ = random.one_in(4) ? 2147483647.0 : 1.0;
     const auto small = [&] { return static_cast<double>(random.integer(-3, 3)); };
     do {

@@ -14,8 +14,7 @@
 #include <cmath>
 #include <vector>
 
-#include "adaptive/ray_scene.h"
-#include "adaptive/receiver_view.h"
+#include "adaptive/sampled_scene.h"
 #include "adaptive/shaft.h"
 #include "generate/families.h"
 

@@ -15,8 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "adaptive/ray_scene.h"
-#include "adaptive/receiver_view.h"
+#include "adaptive/sampled_scene.h"
 #include "generate/random.h"
 #include "support/random_scenes.h"
 

@@ -17,7 +17,7 @@
 #include "exactff/models.h"
 #include "exactff/receiver.h"
 #include "exactff/view_factors.h"
-#include "kernel/exact_vec.h"
+#include "kernel/numbers.h"
 #include "studies/honesty.h"
 #include "support/oracle.h"
 #include "support/plain_factor.h"

@@ -5,12 +5,11 @@
 #include <cctype>
 #include <optional>
 
-#include "page/plot_script.h"
+#include "page/gnuplot.h"
 #include "text/csv_lines.h"
 #include "text/escape.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
-#include "text/text_file.h"
 #include "text/text_lines.h"
 
 namespace exactff::field {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "exactff/progress.h"
-#include "page/figure.h"
+#include "page/chapter.h"
 
 namespace exactff::field {
 

@@ -12,9 +12,9 @@
 #include "exactff/view_factors.h"
 #include "fuzz/scene_bytes.h"
 #include "generate/random.h"
-#include "view_factors/near_planes.h"
 #include "view_factors/pair.h"
-#include "view_factors/patch_parts.h"
+#include "view_factors/point_factors.h"
+#include "view_factors/prepared_patch.h"
 #include "view_factors/seen_parts.h"
 
 namespace exactff::validation {

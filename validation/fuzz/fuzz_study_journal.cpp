@@ -19,7 +19,7 @@
 #include "fuzz/edits.h"
 #include "report/report.h"
 #include "support/program.h"
-#include "text/fnv1a.h"
+#include "text/hashes.h"
 #include "unit/reports/study_support.h"
 
 namespace exactff::validation {

@@ -10,7 +10,7 @@
 #include "exactff/models.h"
 #include "generate/families.h"
 #include "generate/patched_rooms.h"
-#include "models/model_files.h"
+#include "models/registry.h"
 
 namespace {
 

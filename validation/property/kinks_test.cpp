@@ -10,7 +10,6 @@
 
 #include "exact/source_planes.h"
 #include "exactff/exact.h"
-#include "gradient/kink_proof.h"
 #include "support/random_meshes.h"
 #include "support/random_scenes.h"
 #include "support/solve.h"

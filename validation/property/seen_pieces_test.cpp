@@ -1,6 +1,4 @@
-// Without the faces of which a box sees no piece (visibility/seen_pieces.h), views from its points are the same.
-#include "visibility/seen_pieces.h"
-
+// Without the faces of which a box sees no piece (visibility/walls.h), views from its points are the same.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "generate/random.h"
 #include "property/closed_rooms.h"
 #include "support/random_scenes.h"
+#include "visibility/walls.h"
 
 namespace exactff::validation {
 namespace {

@@ -1,6 +1,4 @@
 // Several sources at one point on scenes of every random family: by one sweep as one by one, in every bit.
-#include "whole_view/source_factors.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "support/oracle_check.h"
 #include "support/random_scenes.h"
 #include "support/view_scenes.h"
+#include "whole_view/light.h"
 
 namespace exactff::validation {
 namespace {

@@ -16,7 +16,7 @@
 #include "exactff/exact.h"
 #include "exactff/matrix.h"
 #include "exactff/receiver.h"
-#include "kernel/exact_vec.h"
+#include "kernel/numbers.h"
 #include "property/closed_rooms.h"
 #include "support/random_scenes.h"
 

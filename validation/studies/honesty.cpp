@@ -16,7 +16,7 @@
 #include "models/random.h"
 #include "studies/honest_families.h"
 #include "view_factors/exact_scene.h"
-#include "view_factors/patch_parts.h"
+#include "view_factors/prepared_patch.h"
 
 namespace exactff::experiments {
 

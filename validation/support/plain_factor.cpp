@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernel/exact_vec.h"
+#include "kernel/numbers.h"
 #include "kernel/vec.h"
 
 namespace exactff::validation {

@@ -14,8 +14,8 @@
 
 #include "exactff/render.h"
 #include "exactff/view.h"
-#include "kernel/exact_vec.h"
-#include "scene/coplanar.h"
+#include "kernel/numbers.h"
+#include "scene/contacts.h"
 #include "support/oracle.h"
 #include "support/picture_areas.h"
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "kernel/exact_vec.h"
+#include "kernel/numbers.h"
 #include "support/oracle.h"
 #include "whole_view/view_edges.h"
 

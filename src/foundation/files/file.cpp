@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "text/text_file.h"
+#include "text/text_lines.h"
 
 namespace exactff::files {
 

@@ -6,10 +6,8 @@
 #include <limits>
 
 #include "kernel/expect.h"
-#include "text/characters.h"
 #include "text/encoding.h"
 #include "text/refuse.h"
-#include "text/text_file.h"
 #include "text/text_lines.h"
 
 namespace exactff::files {

@@ -13,7 +13,6 @@
 
 #include "files/npy_file.h"
 #include "text/refuse.h"
-#include "text/text_file.h"
 #include "text/text_lines.h"
 
 namespace exactff::files {

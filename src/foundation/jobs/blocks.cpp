@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-#include "text/crc32.h"
+#include "text/hashes.h"
 
 namespace exactff::jobs {
 namespace {

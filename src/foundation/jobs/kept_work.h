@@ -6,7 +6,7 @@
 
 #include "exactff/jobs.h"
 #include "files/fields.h"
-#include "text/fnv1a.h"
+#include "text/hashes.h"
 
 namespace exactff::jobs {
 

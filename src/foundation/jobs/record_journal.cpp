@@ -14,7 +14,7 @@
 #include "exactff/version.h"
 #include "files/file.h"
 #include "files/work_folder.h"
-#include "text/crc32.h"
+#include "text/hashes.h"
 
 namespace exactff::jobs {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "exactff/version.h"
 #include "table/csv.h"
-#include "text/characters.h"
+#include "text/encoding.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/refuse.h"

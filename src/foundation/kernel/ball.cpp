@@ -1,5 +1,8 @@
 // clang-format off
+#include "kernel/ball.h"
+
 #include <mpfr.h>  // first: only then does FLINT 3 declare what converts to MPFR's numbers
+
 // clang-format on
 
 #include "kernel/ball.h"
@@ -260,3 +263,11 @@ std::string Enclosure::midpoint() const { return print(ball()).midpoint; }
 std::string Enclosure::radius() const { return print(ball()).radius; }
 
 }  // namespace exactff
+
+namespace exactff::kernel {
+
+// --- Tangent ---
+
+Ball tan(const Ball& a) { return ball_of<arb_tan>(a); }
+
+}  // namespace exactff::kernel

@@ -118,3 +118,13 @@ struct EnclosureInside {
 };
 
 }  // namespace exactff
+
+namespace exactff::kernel {
+
+// --- Tangent ---
+
+// The tangent in balls.
+
+[[nodiscard]] Ball tan(const Ball& a);
+
+}  // namespace exactff::kernel

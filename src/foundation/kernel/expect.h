@@ -13,7 +13,7 @@ namespace exactff::kernel {
 }  // namespace exactff::kernel
 
 // A requirement that is not kept is an error in the library. What a user of the library can get wrong is checked in
-// every build, with words (scene/misuse.h).
+// every build, with words (scene/scene.h).
 #ifdef EXACTFF_CHECKS_REQUIREMENTS
 #define EXACTFF_EXPECT(condition) \
   ((condition) ? static_cast<void>(0) : ::exactff::kernel::broken_requirement(#condition, __FILE__, __LINE__))

@@ -1,7 +1,5 @@
 #include "kernel/filter.h"
 
-#include <algorithm>
-#include <array>
 #include <limits>
 
 namespace exactff::kernel {

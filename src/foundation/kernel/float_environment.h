@@ -1,7 +1,11 @@
-// The arithmetic that every proof in this library assumes: rounding to nearest, gradual underflow, no traps.
+// The arithmetic that every proof in this library assumes: rounding to nearest, gradual underflow, no traps; and
+// bounds by doubles that rely on it.
 #pragma once
 
 #include <cfenv>
+#include <cmath>
+#include <limits>
+
 #ifdef __SSE2__
 #include <xmmintrin.h>
 #endif
@@ -43,5 +47,14 @@ class StandardArithmetic {
   std::fenv_t before_{};
   bool has_changed_ = false;
 };
+
+// --- Outward ---
+
+// Bounds by doubles. With rounding to nearest, the exact result of an operation lies between the
+// two neighbours of the computed one. An infinite bound stays valid: the neighbour of an infinity is the largest
+// double.
+
+[[nodiscard]] inline double below(double x) { return std::nextafter(x, -std::numeric_limits<double>::infinity()); }
+[[nodiscard]] inline double above(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
 
 }  // namespace exactff::kernel

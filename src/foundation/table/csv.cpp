@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "text/escape.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"

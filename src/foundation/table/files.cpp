@@ -17,7 +17,7 @@
 #include "text/json_document.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
-#include "text/text_file.h"
+#include "text/text_lines.h"
 
 namespace exactff::table {
 namespace {

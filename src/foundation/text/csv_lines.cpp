@@ -7,7 +7,6 @@
 
 #include "exactff/error.h"
 #include "text/encoding.h"
-#include "text/text_file.h"
 #include "text/text_lines.h"
 
 namespace exactff::text {

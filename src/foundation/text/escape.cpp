@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "text/characters.h"
 #include "text/encoding.h"
 #include "text/phrases.h"
 

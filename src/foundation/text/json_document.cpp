@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "text/characters.h"
+#include "text/encoding.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 

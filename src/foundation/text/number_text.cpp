@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "kernel/numbers.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/text_lines.h"
 
 namespace exactff::text {

@@ -1,7 +1,8 @@
-// Formats words and numbers for tables, reports and messages. Nothing here depends on the locale.
+// Formats words, numbers and intervals for tables, reports and messages. Nothing here depends on the locale.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,5 +40,14 @@ namespace exactff::text {
 
 // The version as all outputs state it: "exactff 0.1.0".
 [[nodiscard]] std::string program_version();
+
+// --- Interval ---
+
+// Intervals for readers.
+
+// "[0.812, 1]": the ends are rounded outward by at most a hundredth of the width, so that they hold what the interval
+// holds. "1.01773" if both ends round to the same six digits. An end that would be rounded beyond the limit is shown as
+// the limit, to six digits.
+[[nodiscard]] std::string interval(double lower, double upper, double limit = std::numeric_limits<double>::infinity());
 
 }  // namespace exactff::text

@@ -36,7 +36,6 @@
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
-#include "text/text_file.h"
 #include "text/text_lines.h"
 
 namespace exactff::cli {

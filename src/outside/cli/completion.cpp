@@ -2,7 +2,7 @@
 // their own languages for this, so for these there are only tables.
 #include "cli/completion.h"
 
-#include "text/nearest_names.h"
+#include "text/names.h"
 
 namespace exactff::cli {
 namespace {

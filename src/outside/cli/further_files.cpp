@@ -7,7 +7,7 @@
 #include "files/file.h"
 #include "flags/file_options.h"
 #include "text/escape.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/refuse.h"
 #include "vtk/vtk.h"
 

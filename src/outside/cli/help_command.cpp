@@ -9,7 +9,7 @@
 #include "cli/command.h"
 #include "cli/help.h"
 #include "cli/output.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"

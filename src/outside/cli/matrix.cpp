@@ -27,7 +27,6 @@
 #include "matrix/row_facts.h"
 #include "matrix/row_on_faces.h"
 #include "matrix/team.h"
-#include "text/interval.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "vtk/vtk.h"

@@ -9,7 +9,7 @@
 #include "cli/option_table.h"
 #include "exactff/error.h"
 #include "text/escape.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/number_text.h"
 #include "text/text_lines.h"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "cli/known_words.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 
 namespace exactff::cli {
 namespace {

@@ -12,7 +12,6 @@
 #include "files/file.h"
 #include "page/output_folder.h"
 #include "text/phrases.h"
-#include "text/text_file.h"
 #include "text/text_lines.h"
 
 namespace exactff::cli {

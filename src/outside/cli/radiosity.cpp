@@ -30,12 +30,11 @@
 #include "radiosity/narrowing.h"
 #include "radiosity/on_faces.h"
 #include "scene/selections.h"
-#include "text/interval.h"
 #include "text/json_document.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
-#include "text/text_file.h"
+#include "text/text_lines.h"
 #include "vtk/vtk.h"
 
 namespace exactff::cli {

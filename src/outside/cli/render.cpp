@@ -24,7 +24,7 @@
 #include "flags/sources.h"
 #include "render/identity.h"
 #include "text/escape.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"

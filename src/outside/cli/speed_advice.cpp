@@ -7,7 +7,7 @@
 
 #include "matrix/entry_jobs.h"
 #include "text/escape.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/phrases.h"
 
 namespace exactff::cli {

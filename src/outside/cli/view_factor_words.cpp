@@ -10,7 +10,7 @@
 #include "cli/output.h"
 #include "exactff/slips.h"
 #include "flags/lists.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/text_lines.h"
 

@@ -6,7 +6,7 @@
 #include "exactff/jobs.h"
 #include "files/apart.h"
 #include "text/escape.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"

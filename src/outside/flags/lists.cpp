@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "scene/selections.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/number_text.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"

@@ -11,7 +11,7 @@
 #include "flags/file_options.h"
 #include "flags/lists.h"
 #include "text/escape.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"

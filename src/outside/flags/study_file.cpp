@@ -7,7 +7,6 @@
 #include "flags/comparison.h"
 #include "kernel/float_environment.h"
 #include "text/refuse.h"
-#include "text/text_file.h"
 #include "text/text_lines.h"
 
 namespace exactff::flags {

@@ -5,7 +5,7 @@
 
 #include "batch/crew.h"
 #include "text/refuse.h"
-#include "whole_view/source_factors.h"
+#include "whole_view/light.h"
 
 namespace exactff::batch {
 namespace {

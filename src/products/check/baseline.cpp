@@ -10,7 +10,7 @@
 #include "text/escape.h"
 #include "text/json_document.h"
 #include "text/phrases.h"
-#include "text/text_file.h"
+#include "text/text_lines.h"
 
 namespace exactff::check {
 namespace {

@@ -7,7 +7,6 @@
 #include "files/work_folder.h"
 #include "kernel/float_environment.h"
 #include "page/gnuplot.h"
-#include "page/plot_script.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 

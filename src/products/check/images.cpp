@@ -7,7 +7,7 @@
 #include "exr/other_image.h"
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 

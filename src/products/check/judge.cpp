@@ -8,7 +8,7 @@
 #include "check/errors.h"
 #include "check/words.h"
 #include "kernel/float_environment.h"
-#include "text/fnv1a.h"
+#include "text/hashes.h"
 #include "text/phrases.h"
 
 namespace exactff::check {

@@ -10,7 +10,6 @@
 #include "text/csv_dialect.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
-#include "text/text_file.h"
 #include "text/text_lines.h"
 
 namespace exactff::check {

@@ -19,7 +19,7 @@
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"
 #include "text/refuse.h"
-#include "text/text_file.h"
+#include "text/text_lines.h"
 
 namespace exactff::exr {
 namespace {

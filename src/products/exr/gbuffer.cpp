@@ -12,8 +12,8 @@
 #include "exr/layers.h"
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"
-#include "receivers/placing.h"
-#include "text/nearest_names.h"
+#include "receivers/own_pieces.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 

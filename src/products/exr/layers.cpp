@@ -8,7 +8,7 @@
 #include "exactff/error.h"
 #include "exactff/exr.h"
 #include "text/escape.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 

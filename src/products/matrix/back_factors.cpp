@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "exactff/matrix.h"
-#include "kernel/outward.h"
+#include "kernel/float_environment.h"
 
 namespace exactff::matrix {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernel/float_environment.h"
-#include "text/fnv1a.h"
+#include "text/hashes.h"
 #include "text/text_lines.h"
 
 namespace exactff::matrix {

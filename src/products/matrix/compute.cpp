@@ -5,7 +5,6 @@
 #include "exactff/matrix.h"
 #include "files/parallel.h"
 #include "kernel/float_environment.h"
-#include "kernel/outward.h"
 #include "matrix/entry_jobs.h"
 #include "matrix/row_facts.h"
 #include "matrix/surroundings.h"

@@ -7,7 +7,7 @@
 #include "exactff/matrix.h"
 #include "exactff/version.h"
 #include "text/encoding.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"

@@ -3,7 +3,7 @@
 
 #include "exactff/matrix.h"
 #include "files/npz_file.h"
-#include "kernel/outward.h"
+#include "kernel/float_environment.h"
 #include "matrix/row_facts.h"
 
 namespace exactff::matrix {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "kernel/outward.h"
+#include "kernel/float_environment.h"
 #include "matrix/back_factors.h"
 
 namespace exactff::matrix {

@@ -3,7 +3,6 @@
 
 #include "exactff/matrix.h"
 #include "kernel/float_environment.h"
-#include "kernel/outward.h"
 
 namespace exactff::matrix {
 namespace {
@@ -11,7 +10,7 @@ namespace {
 using kernel::above;
 using kernel::below;
 
-constexpr double kRoundedAreas = 0x1p-44;  // relative; as in view_factors/view_factor.cpp
+constexpr double kRoundedAreas = 0x1p-44;  // relative; as in view_factors/pairs.cpp
 
 // A F / M, where M is the larger area: the factor from the larger patch.
 struct Exchange {

@@ -8,10 +8,10 @@
 #include <string>
 #include <utility>
 
-#include "kernel/plane_through.h"
+#include "kernel/filter.h"
 #include "kernel/poll.h"
 #include "scene/closed_surfaces.h"
-#include "scene/coplanar.h"
+#include "scene/contacts.h"
 #include "scene/scene_copy.h"
 #include "text/refuse.h"
 #include "view_factors/pairs.h"

@@ -4,7 +4,7 @@
 #include <array>
 #include <limits>
 
-#include "kernel/outward.h"
+#include "kernel/float_environment.h"
 #include "matrix/surroundings.h"
 
 namespace exactff::radiosity {
@@ -15,7 +15,7 @@ using kernel::below;
 using matrix::Sum;
 
 constexpr std::array<Sum Balance::*, 4> kWays = {&Balance::absorbed, &Balance::back, &Balance::open, &Balance::lost};
-constexpr double kRoundedAreas = 0x1p-44;  // relative; as in view_factors/view_factor.cpp
+constexpr double kRoundedAreas = 0x1p-44;  // relative; as in view_factors/pairs.cpp
 
 bool is_zero(const Sum& x) { return x.lower == 0.0 && x.upper == 0.0; }
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <utility>
 
-#include "text/fnv1a.h"
+#include "text/hashes.h"
 
 namespace exactff::radiosity {
 

@@ -7,7 +7,6 @@
 
 #include "exactff/radiosity.h"
 #include "whole_view/light.h"
-#include "whole_view/source_factors.h"
 
 namespace exactff::radiosity {
 

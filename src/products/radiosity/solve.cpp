@@ -6,12 +6,11 @@
 
 #include "exactff/radiosity.h"
 #include "kernel/float_environment.h"
-#include "kernel/outward.h"
 #include "matrix/row_facts.h"
 #include "radiosity/balance.h"
 #include "radiosity/narrowing.h"
 #include "radiosity/system.h"
-#include "scene/scene_data.h"
+#include "scene/scene.h"
 #include "text/phrases.h"
 
 namespace exactff::radiosity {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "kernel/outward.h"
+#include "kernel/float_environment.h"
 #include "radiosity/linear_solver.h"
 
 namespace exactff::radiosity {

@@ -22,11 +22,11 @@
 
 #include "exactff/render.h"
 #include "kernel/double_double.h"
-#include "kernel/exact_vec.h"
 #include "kernel/filter.h"
 #include "kernel/float_environment.h"
+#include "kernel/numbers.h"
 #include "kernel/vec.h"
-#include "receivers/placing.h"
+#include "receivers/own_pieces.h"
 #include "scene/contacts.h"
 #include "scene/shaft_tree.h"
 #include "text/refuse.h"

@@ -6,7 +6,7 @@
 #include "exactff/version.h"
 #include "jobs/kept_work.h"
 #include "kernel/float_environment.h"
-#include "scene/misuse.h"
+#include "scene/scene.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/refuse.h"

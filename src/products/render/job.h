@@ -9,7 +9,6 @@
 #include "exactff/render.h"
 #include "radiosity/gather.h"
 #include "whole_view/light.h"
-#include "whole_view/source_factors.h"
 
 namespace exactff::render {
 

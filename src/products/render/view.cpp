@@ -8,7 +8,6 @@
 #include "exactff/render.h"
 #include "kernel/ball.h"
 #include "kernel/float_environment.h"
-#include "kernel/tangent.h"
 #include "kernel/vec.h"
 #include "text/phrases.h"
 

@@ -2,7 +2,7 @@
 #include "exactff/render.h"
 #include "files/file.h"
 #include "text/escape.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/refuse.h"
 
 namespace exactff::render {

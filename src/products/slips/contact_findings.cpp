@@ -10,14 +10,13 @@
 #include <set>
 #include <utility>
 
+#include "kernel/filter.h"
 #include "kernel/float_environment.h"
-#include "kernel/plane_through.h"
 #include "kernel/poll.h"
 #include "kernel/vec.h"
 #include "scene/closed_surfaces.h"
 #include "scene/contacts.h"
-#include "scene/coplanar.h"
-#include "scene/places.h"
+#include "scene/scene.h"
 #include "scene/selections.h"
 #include "scene/solids.h"
 #include "slips/findings.h"

@@ -12,7 +12,7 @@
 #include "scene/selections.h"
 #include "slips/findings.h"
 #include "slips/sight_lines.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/text_lines.h"
 

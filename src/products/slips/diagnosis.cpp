@@ -9,7 +9,7 @@
 #include "scene/selections.h"
 #include "slips/findings.h"
 #include "slips/oriented_surfaces.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/phrases.h"
 
 namespace exactff::slips {

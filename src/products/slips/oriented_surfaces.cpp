@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "scene/junctions.h"
-#include "scene/places.h"
+#include "scene/scene.h"
+#include "scene/solids.h"
 
 namespace exactff::slips {
 

@@ -7,10 +7,10 @@
 #include <limits>
 #include <map>
 
-#include "kernel/exact_vec.h"
+#include "kernel/numbers.h"
 #include "kernel/poll.h"
 #include "kernel/vec.h"
-#include "scene/places.h"
+#include "scene/scene.h"
 #include "scene/selections.h"
 #include "slips/findings.h"
 #include "text/phrases.h"

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <set>
 
-#include "scene/places.h"
-#include "scene/planes.h"
+#include "scene/panels.h"
+#include "scene/scene.h"
 #include "scene/selections.h"
 #include "slips/findings.h"
-#include "text/fnv1a.h"
+#include "text/hashes.h"
 #include "text/phrases.h"
 #include "text/text_lines.h"
 

@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "files/parallel.h"
-#include "kernel/exact_vec.h"
-#include "scene/misuse.h"
-#include "text/fnv1a.h"
+#include "kernel/numbers.h"
+#include "scene/scene.h"
+#include "text/hashes.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 

@@ -15,7 +15,6 @@
 #include "truth/columns.h"
 #include "truth/unit_normal.h"
 #include "whole_view/light.h"
-#include "whole_view/source_factors.h"
 
 namespace exactff::truth {
 

@@ -11,9 +11,9 @@
 
 #include "files/little_endian.h"
 #include "files/parallel.h"
-#include "text/base64.h"
+#include "text/encoding.h"
 #include "text/escape.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "vtk/vtk.h"

@@ -7,7 +7,7 @@
 
 #include "exactff/models.h"
 #include "files/stopwatch.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 

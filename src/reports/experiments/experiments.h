@@ -19,7 +19,7 @@
 #include "exactff/render.h"
 #include "exactff/study.h"
 #include "page/chapter.h"
-#include "page/plot_script.h"
+#include "page/gnuplot.h"
 #include "study/settings.h"
 #include "text/csv_row.h"
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "kernel/statistics.h"
-#include "page/plot_script.h"
+#include "page/gnuplot.h"
 #include "report/report.h"
 #include "report/verdicts.h"
 #include "study/settings.h"

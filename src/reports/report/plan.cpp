@@ -16,7 +16,7 @@
 #include "report/report.h"
 #include "report/verdicts.h"
 #include "text/escape.h"
-#include "text/fnv1a.h"
+#include "text/hashes.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 

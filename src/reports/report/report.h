@@ -13,7 +13,6 @@
 #include "exactff/methods.h"
 #include "exactff/study.h"
 #include "page/chapter.h"
-#include "page/figure.h"
 
 namespace exactff::report {
 

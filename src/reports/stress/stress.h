@@ -17,7 +17,7 @@
 #include "exactff/enclosure.h"
 #include "exactff/exact.h"
 #include "exactff/progress.h"
-#include "page/figure.h"
+#include "page/chapter.h"
 
 namespace exactff::stress {
 

@@ -16,7 +16,7 @@
 
 #include "files/parallel.h"
 #include "kernel/expect.h"
-#include "methods/adaptive_settings.h"
+#include "methods/adaptive.h"
 #include "study/sight.h"
 #include "study/silent_errors.h"
 #include "study/statistics.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "exactff/study.h"
-#include "methods/adaptive_settings.h"
+#include "methods/adaptive.h"
 
 namespace exactff::study {
 

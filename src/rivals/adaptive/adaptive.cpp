@@ -18,13 +18,12 @@
 #include <span>
 #include <string>
 
-#include "adaptive/closed_form.h"
 #include "adaptive/patch_visibility.h"
 #include "adaptive/sampled_scene.h"
-#include "adaptive/value_range.h"
+#include "adaptive/sub_patch.h"
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"
-#include "scene/misuse.h"
+#include "scene/scene.h"
 
 namespace exactff {
 

@@ -8,10 +8,9 @@
 //      they are after a split or two, angle / |a x b| = g(q^2) / (a . b) with q = |a x b| / (a . b) and g(z) =
 //      atan(sqrt z) / sqrt z = 1 - z/3 + z^2/5 - ..., which needs no root and no atan2. It is computed for four edges
 //      at a time.
-#include "adaptive/closed_form.h"
-
 #include <numbers>
 
+#include "adaptive/sub_patch.h"
 #include "kernel/expect.h"
 #include "kernel/lanes.h"
 

@@ -20,7 +20,6 @@
 #include <span>
 #include <vector>
 
-#include "adaptive/plane_side.h"
 #include "adaptive/sample_points.h"
 #include "adaptive/sub_patch.h"
 

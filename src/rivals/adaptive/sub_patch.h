@@ -1,13 +1,53 @@
-// Triangles and quadrilaterals of the source, and ways to split them.
+// Triangles and quadrilaterals of the source: ways to split them, the sides of their planes, their unoccluded form
+// factor.
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "adaptive/vec.h"
+#include "exactff/geometry.h"
+#include "exactff/scene.h"
+#include "kernel/expect.h"
+#include "kernel/vec.h"
 
 namespace exactff::adaptive {
+
+// --- Plain double vectors for the sampled methods ---
+
+inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
+inline Vec3 operator*(const Vec3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
+
+using kernel::cross;
+using kernel::dot;
+using kernel::max_norm;
+
+// Squares at least this large are accurate, and remain accurate if a product loses 2^-100.
+inline constexpr double kLeastSquare = 0x1p-900;
+
+// `a` times the power of two that brings its max norm into [1, 2); `exponent` undoes it. Requires a finite a other
+// than 0.
+inline Vec3 normalised(const Vec3& a, int& exponent) {
+  EXACTFF_EXPECT(kernel::is_finite(a) && !(a == Vec3{}));
+  exponent = std::ilogb(max_norm(a));
+  return {std::scalbn(a.x, -exponent), std::scalbn(a.y, -exponent), std::scalbn(a.z, -exponent)};
+}
+
+// Also correct where squares underflow. Requires components below 2^511.
+inline double length(const Vec3& a) {
+  const double square = dot(a, a);
+  if (square >= kLeastSquare) return std::sqrt(square);
+  if (a == Vec3{}) return 0.0;
+  int exponent = 0;
+  const Vec3 near_one = normalised(a, exponent);
+  return std::scalbn(std::sqrt(dot(near_one, near_one)), exponent);
+}
+
+// --- Sub patch ---
 
 enum class PatchShape { kTriangle, kParallelogram, kQuadrilateral };
 
@@ -42,5 +82,78 @@ void split_evenly(const SubPatch& s, int m, std::vector<SubPatch>& parts);
 // The part of a convex polygon with normal . corner >= 0, corners relative to the receiving point. Fewer than three
 // corners: nothing is left. `clipped` may not alias `polygon`.
 void clip_by_horizon(std::span<const Vec3> polygon, const Vec3& normal, std::vector<Vec3>& clipped);
+
+// --- Plane side ---
+
+// Tests for sides of planes, used to set up one receiver: sums of products with a bound on their rounding error.
+//
+// Notation: u = 2^-53. Inputs are differences of points, within relative error u a component. A component of a cross
+// product errs by at most 4u of its magnitude (the sum of the magnitudes of its two products), a dot product with it by
+// less than 9u of its own magnitude; the bound used is 32u. Every product with a zero factor has magnitude 0, and every
+// other at least 2^-400, far above the effect of underflow in coordinates of about 1. So an axis-parallel plane gets
+// the bound 0 and is decided like the others, without an exact sign.
+
+struct Bounded {
+  double value = 0.0;
+  double error = 0.0;
+
+  [[nodiscard]] bool certainly_positive() const { return value > error; }
+  [[nodiscard]] bool certainly_negative() const { return value < -error; }
+  [[nodiscard]] bool certainly_not_positive() const { return value <= -error; }
+  [[nodiscard]] bool certainly_zero() const { return value == 0.0 && error == 0.0; }
+};
+
+// A normal and the magnitudes of its components' terms.
+struct Normal {
+  Vec3 value;
+  Vec3 magnitude;
+};
+
+// (b - a) x (c - a): points to the side from which a, b, c run counter-clockwise.
+[[nodiscard]] Normal plane_normal(const Vec3& a, const Vec3& b, const Vec3& c);
+// The given vector as a normal, without error.
+[[nodiscard]] Normal exact_normal(const Vec3& n);
+
+[[nodiscard]] Bounded bounded_dot(const Normal& n, const Vec3& d);
+
+// --- Source roots ---
+
+// A source prepared for the recursion: its faces as triangles and quadrilaterals, and which pieces lie in their planes.
+
+struct SourcePlane {
+  std::array<Vec3, 3> frame;            // scaled; counter-clockwise seen from the front
+  std::array<Vec3, 3> exact_frame;      // not scaled
+  std::vector<std::uint32_t> coplanar;  // pieces exactly in this plane, ascending
+};
+
+struct SourceRoot {
+  std::array<Vec3, 4> corners;  // scaled
+  int corner_count = 0;
+  std::uint32_t plane = 0;
+  std::uint32_t piece = 0;
+};
+
+struct SourceRoots {
+  std::vector<SourcePlane> planes;
+  std::vector<SourceRoot> roots;
+};
+
+// `points` are the scene's vertices scaled to about 1. A piece with three or four corners is a root, any other a fan of
+// triangles. A piece with the same corners as an earlier one of the source is left out; other overlaps of coplanar
+// faces are not detected.
+[[nodiscard]] SourceRoots make_source_roots(const Scene& scene, const std::vector<Vec3>& points,
+                                            const Selection& selection);
+
+// --- Closed form ---
+
+// Tampieri's Eq. (4): the unoccluded form factor from the origin to a polygon.
+
+// In double, by atan2; an estimate with a relative error of about 1e-15 r/h for a patch of size h at distance r.
+// Requires a unit normal and a patch above the horizon of x.
+[[nodiscard]] double unoccluded_form_factor(const SubPatch& s, const Vec3& unit_normal);
+
+// As printed in 1992, in single precision by acos: wrong for small or distant patches, and for patches that the horizon
+// cuts.
+[[nodiscard]] double literal_unoccluded_form_factor(const SubPatch& s, const Vec3& unit_normal);
 
 }  // namespace exactff::adaptive

@@ -16,7 +16,7 @@
 #include <limits>
 #include <numbers>
 
-#include "adaptive/value_range.h"
+#include "adaptive/sampled_scene.h"
 #include "kernel/poll.h"
 #include "methods/method_files.h"
 #include "methods/ray_sum.h"

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include "adaptive/plane_side.h"
+#include "adaptive/sub_patch.h"
 #include "kernel/expect.h"
 #include "kernel/poll.h"
 

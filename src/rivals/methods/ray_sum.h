@@ -11,7 +11,6 @@
 
 #include "adaptive/sample_points.h"
 #include "adaptive/sampled_scene.h"
-#include "adaptive/source_roots.h"
 #include "adaptive/sub_patch.h"
 #include "exactff/methods.h"
 

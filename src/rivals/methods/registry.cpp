@@ -3,9 +3,9 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "methods/adaptive_settings.h"
+#include "methods/adaptive.h"
 #include "methods/method_files.h"
-#include "text/choice_text.h"
+#include "text/settings.h"
 
 namespace exactff::methods {
 

@@ -7,7 +7,7 @@
 // The disc keeps the value finite where dA is large compared with r^2.
 #include <numbers>
 
-#include "adaptive/value_range.h"
+#include "adaptive/sampled_scene.h"
 #include "methods/method_files.h"
 #include "methods/ray_sum.h"
 

@@ -8,7 +8,6 @@
 #include "text/phrases.h"
 
 namespace exactff::formats {
-
 namespace {
 
 constexpr std::size_t kMostIndices = std::numeric_limits<std::uint32_t>::max();

@@ -1,4 +1,5 @@
-// What the readers of PLY, STL, OFF and View3D files share: the scene being built, and the problems found so far.
+// What the readers of PLY, STL, OFF and View3D files share: the scene being built, and the problems found so far; and
+// the readers of all formats.
 #pragma once
 
 #include <cstddef>
@@ -73,5 +74,19 @@ class MeshInput {
   std::optional<PatchId> default_patch_;  // made at its first face
   std::size_t face_count_ = 0;
 };
+
+// --- Readers ---
+
+// The readers, each of one format. `bytes` is the whole file, `path` names it in messages.
+
+// Each throws InputError with all problems found.
+[[nodiscard]] Scene read_obj(std::string_view text, const std::filesystem::path& path, const SceneOptions& options);
+[[nodiscard]] Scene read_off(std::string_view text, const std::filesystem::path& path, const SceneOptions& options);
+[[nodiscard]] Scene read_ply(std::string_view bytes, const std::filesystem::path& path, const SceneOptions& options);
+[[nodiscard]] Scene read_stl_text(std::string_view text, const std::filesystem::path& path,
+                                  const SceneOptions& options);
+[[nodiscard]] Scene read_stl_binary(std::string_view bytes, const std::filesystem::path& path,
+                                    const SceneOptions& options);
+[[nodiscard]] Scene read_view3d(std::string_view text, const std::filesystem::path& path, const SceneOptions& options);
 
 }  // namespace exactff::formats

@@ -2,10 +2,12 @@
 // through.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "exactff/error.h"
 #include "exactff/scene.h"
 #include "text/text_lines.h"
 
@@ -16,5 +18,21 @@ namespace exactff {
 // `file` names the text in messages.
 std::vector<Material> read_mtl(std::string_view text, const std::string& file, text::ProblemList& problems,
                                text::ProblemList& warnings);
+
+// --- Converted names ---
+
+// The names of a file that are not UTF-8. They are converted, and the user is told once for each file.
+
+class ConvertedNames {
+ public:
+  void add(std::size_t line, std::string_view name);
+  [[nodiscard]] const std::set<std::string>& names() const { return names_; }  // as they are in the file
+  [[nodiscard]] Problem warning(const std::string& file) const;                // requires at least one name
+
+ private:
+  std::set<std::string> names_;
+  std::string first_;
+  std::size_t first_line_ = 0;
+};
 
 }  // namespace exactff

@@ -1,39 +1,325 @@
+// Scene files: which format a file has; it is read or written accordingly.
 #include "exactff/scene_files.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <cstring>
 
-#include "formats/file_kind.h"
+#include "formats/mesh_input.h"
+#include "formats/stl.h"
 #include "formats/writers.h"
 #include "kernel/float_environment.h"
+#include "scene/scene.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/text_lines.h"
 
 namespace exactff {
-
 namespace formats {
+namespace {
 
-void append_number(std::string& out, double value) {
-  std::array<char, 40> text{};
-  out.append(text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr);
+enum class Format { kObj, kPly, kStlText, kStlBinary, kOff, kView3d };
+
+// A format that exactff does not read.
+struct ForeignKind {
+  std::string_view name;       // "a glTF file"
+  std::string_view converter;  // completes "convert it, for example with ..."
+};
+
+constexpr std::size_t kLookedAt = std::size_t{1} << 16;  // bytes of a file that show its format
+
+constexpr std::string_view kAssimp = "assimp export IN OUT.obj, or Blender; both keep the names of objects";
+constexpr std::string_view kBlender = "Blender: export Wavefront (.obj), which keeps the names of objects";
+constexpr std::string_view kMeshio =
+    "meshio convert IN OUT.ply; names are lost unless a script gives them to exactff.Scene (data/README.md shows one)";
+constexpr std::string_view kScript =
+    "a script that gives exactff.Scene its polygons and their names (data/README.md shows one)";
+constexpr std::string_view kCad = "FreeCAD, or gmsh IN -2 -o OUT.stl";
+constexpr std::string_view kUnpack = "its unpacker";
+
+constexpr ForeignKind kGmsh{
+    "a Gmsh file",
+    "gmsh IN -save -setnumber Mesh.StlOneSolidPerSurface 2 -o OUT.stl, which keeps the names of "
+    "physical groups"};
+constexpr ForeignKind kFluent{"a Fluent mesh", kMeshio};
+constexpr ForeignKind kMsh{"a Gmsh or Fluent mesh (.msh)", kMeshio};
+constexpr ForeignKind kAbaqus{"an Abaqus or CalculiX file", kMeshio};
+constexpr ForeignKind kInp{"an Abaqus, CalculiX or AVS file (.inp)", kMeshio};
+constexpr ForeignKind kNastran{"a Nastran file", kMeshio};
+constexpr ForeignKind kVtk{"a VTK file", "ParaView or meshio: save as PLY, without names"};
+constexpr ForeignKind kGltf{"a glTF file", kAssimp};
+constexpr ForeignKind kCollada{"a Collada file", kAssimp};
+constexpr ForeignKind kFbx{"an FBX file", kAssimp};
+constexpr ForeignKind k3ds{"a 3DS file", kAssimp};
+constexpr ForeignKind kX3d{"an X3D file", kAssimp};
+constexpr ForeignKind kVrml{"a VRML file", kAssimp};
+constexpr ForeignKind kUsd{"a USD file", kBlender};
+constexpr ForeignKind kBlend{"a Blender file", kBlender};
+constexpr ForeignKind kRhino{"a Rhino file (.3dm)", "Rhino: export Wavefront (.obj)"};
+constexpr ForeignKind kStep{"a STEP file", kCad};
+constexpr ForeignKind kIges{"an IGES file", kCad};
+constexpr ForeignKind kDxf{"a DXF file", kCad};
+constexpr ForeignKind kDwg{"a DWG file", kCad};
+constexpr ForeignKind kIfc{"an IFC file",
+                           "IfcConvert --use-element-names IN OUT.obj, which keeps the names of elements"};
+constexpr ForeignKind kGbxml{"a gbXML file", "a BIM program: export Wavefront (.obj)"};
+constexpr ForeignKind kEnergyPlus{"an EnergyPlus input file",
+                                  "geomeppy in Python, whose surfaces have a Name and coords, and exactff.Scene "
+                                  "(data/README.md shows a script)"};
+constexpr ForeignKind kEpJson{"an EnergyPlus input file (epJSON)", kScript};
+constexpr ForeignKind kRadiance{"a Radiance scene", kScript};
+constexpr ForeignKind kPbrt{"a pbrt scene", "pbrt --toply IN, which writes its triangle meshes as PLY files"};
+constexpr ForeignKind kMitsuba{"a Mitsuba scene", "the OBJ and PLY files that it names, which exactff reads"};
+constexpr ForeignKind kFoam{"an OpenFOAM file",
+                            "surfaceMeshExtract OUT.obj in the folder of the case, which keeps the names of patches"};
+constexpr ForeignKind kHdf{"an HDF5 file (CGNS, MED, XDMF data)", kMeshio};
+constexpr ForeignKind kNetCdf{"a NetCDF file (Exodus)", kMeshio};
+
+struct Signature {
+  std::string_view bytes;
+  ForeignKind kind;
+};
+
+// The first bytes of a file.
+constexpr std::array<Signature, 31> kSignatures = {{
+    {"glTF", {"a binary glTF file (.glb)", kAssimp}},
+    {"# vtk DataFile", kVtk},
+    {"Kaydara FBX Binary", kFbx},
+    {"; FBX", kFbx},
+    {"BLENDER", kBlend},
+    {"xof 0", {"a DirectX file", kAssimp}},
+    {"#VRML", kVrml},
+    {"#X3D", kX3d},
+    {"#Inventor", {"an Open Inventor file", kAssimp}},
+    {"PXR-USDC", kUsd},
+    {"#usda", kUsd},
+    {"//Maya ASCII", {"a Maya file", "Maya: export Wavefront (.obj)"}},
+    {"3D Geometry File Format", kRhino},
+    {"AutoCAD Binary DXF", kDxf},
+    {"AC10", kDwg},
+    {"DBRep_DrawableShape", {"an Open CASCADE file (.brep)", kCad}},
+    {"CASCADE Topology", {"an Open CASCADE file (.brep)", kCad}},
+    {"$MeshFormat", kGmsh},
+    {"(0 \"", kFluent},
+    {"MeshVersionFormatted", {"a Medit file", kMeshio}},
+    {"*HEADING", kAbaqus},
+    {"*Heading", kAbaqus},
+    {"\x89HDF\r\n\x1a\n", kHdf},
+    {"CDF\x01", kNetCdf},
+    {"CDF\x02", kNetCdf},
+    {"\x93NUMPY", {"a NumPy file", "meshio or trimesh in Python"}},
+    {"PK\x03\x04", {"a ZIP archive (3MF, USDZ, FCStd, KMZ or other)", kUnpack}},
+    {"\x1f\x8b", {"a file compressed by gzip", "gunzip"}},
+    {"\x28\xb5\x2f\xfd", {"a file compressed by zstd (a new Blender file?)", "unzstd, or Blender: export Wavefront"}},
+    {"BZh", {"a file compressed by bzip2", "bunzip2"}},
+    {"\xfd"
+     "7zXZ",
+     {"a file compressed by xz", "unxz"}},
+}};
+
+struct Extension {
+  std::string_view name;
+  ForeignKind kind;
+};
+
+// They count where the content tells nothing, and is not that of an OBJ file.
+constexpr std::array<Extension, 37> kExtensions = {{
+    {".inp", kInp},
+    {".bdf", kNastran},
+    {".nas", kNastran},
+    {".fem", kNastran},
+    {".rad", kRadiance},
+    {".idf", kEnergyPlus},
+    {".imf", kEnergyPlus},
+    {".epjson", kEpJson},
+    {".msh", kMsh},
+    {".vtk", kVtk},
+    {".vtu", kVtk},
+    {".vtp", kVtk},
+    {".gltf", kGltf},
+    {".glb", kGltf},
+    {".pbrt", kPbrt},
+    {".dae", kCollada},
+    {".3ds", k3ds},
+    {".fbx", kFbx},
+    {".stp", kStep},
+    {".step", kStep},
+    {".igs", kIges},
+    {".iges", kIges},
+    {".ifc", kIfc},
+    {".gbxml", kGbxml},
+    {".dxf", kDxf},
+    {".dwg", kDwg},
+    {".3dm", kRhino},
+    {".blend", kBlend},
+    {".wrl", kVrml},
+    {".x3d", kX3d},
+    {".usd", kUsd},
+    {".usda", kUsd},
+    {".usdc", kUsd},
+    {".med", kHdf},
+    {".cgns", kHdf},
+    {".exo", kNetCdf},
+    {".skp", {"a SketchUp file", "SketchUp: export OBJ"}},
+}};
+
+bool contains(std::string_view bytes, std::string_view part) { return bytes.find(part) != std::string_view::npos; }
+
+// STEP and IFC are schemes of one file format.
+ForeignKind step_kind(std::string_view head) { return contains(head, "IFC") ? kIfc : kStep; }
+
+ForeignKind markup_kind(std::string_view head) {
+  if (contains(head, "<VTKFile")) return kVtk;
+  if (contains(head, "<COLLADA")) return kCollada;
+  if (contains(head, "<X3D")) return kX3d;
+  if (contains(head, "<Xdmf")) return {"an XDMF file", kMeshio};
+  if (contains(head, "<gbXML")) return kGbxml;
+  if (contains(head, "<scene version")) return kMitsuba;
+  if (contains(head, "<html") || contains(head, "<!DOCTYPE html") || contains(head, "<!doctype html"))
+    return {"a web page", "the page's own link to the file"};
+  return {"an XML file", kAssimp};
 }
 
-void append_point(std::string& out, const Vec3& point) {
-  for (const double coordinate : {point.x, point.y, point.z}) {
-    out += ' ';
-    append_number(out, coordinate);
+ForeignKind json_kind(std::string_view head) {
+  if (contains(head, "\"BuildingSurface:Detailed\"") || contains(head, "\"Building\"")) return kEpJson;
+  const bool gltf = contains(head, "\"asset\"") || contains(head, "\"meshes\"") || contains(head, "\"accessors\"");
+  return gltf ? kGltf : ForeignKind{"a JSON file", "its own program"};
+}
+
+// The first group of a DXF file: code 0, value SECTION.
+bool is_dxf(std::string_view head) { return text::take_word(head) == "0" && text::take_word(head) == "SECTION"; }
+
+// Text of a kind without a signature, by words that begin lines.
+std::optional<ForeignKind> text_kind(std::string_view head) {
+  text::PlainLines lines(head);
+  for (text::TextLine line; lines.next(line);) {
+    std::string_view rest = line.text;
+    const std::string_view word = text::take_word(rest), second = text::take_word(rest);
+    const std::string start = text::in_lower_case(word);
+    if (word.size() > 1 && word[0] == '*' && word[1] != '*') return kAbaqus;
+    if ((start == "begin" && text::in_lower_case(second) == "bulk") || word == "GRID" || word.starts_with("GRID,") ||
+        word.starts_with("GRID*"))
+      return kNastran;
+    if (start == "buildingsurface:detailed," || start == "zone," || start.starts_with("version,")) return kEnergyPlus;
+    if (word == "WorldBegin" || (word == "Shape" && second.starts_with('"'))) return kPbrt;
+    if (word == "FoamFile") return kFoam;
+    if (second == "polygon" || (word == "void" && (second == "plastic" || second == "light" || second == "glass")))
+      return kRadiance;
   }
+  return std::nullopt;
 }
 
-void Losses::add_materials(const Scene& scene, const std::string& format) {
-  const auto is_lost = [](const Material& m) { return m.emits() || m.reflectance != Rgb{1.0, 1.0, 1.0}; };
-  const auto lost = std::count_if(scene.materials().begin(), scene.materials().end(), is_lost);
-  if (lost == 0) return;
-  add("Kd and Ke of " + text::counted(static_cast<std::uint64_t>(lost), "material") + " are lost",
-      format + " has no materials", "write OBJ to keep them");
+// Lines of 80 columns; those of the first section end in S and a number.
+bool is_iges(std::string_view head) {
+  constexpr std::size_t kSection = 72;
+  std::string_view line = head.substr(0, head.find_first_of("\r\n"));
+  if (line.size() != 80 || line[kSection] != 'S') return false;
+  return text::trimmed(line.substr(kSection + 1)) == "1" || text::trimmed(line.substr(kSection + 1)) == "0000001";
 }
 
+// A chunk 0x4D4D whose length is that of the file.
+bool is_3ds(std::string_view bytes) {
+  if (bytes.size() < 6 || !bytes.starts_with("MM")) return false;
+  std::size_t length = 0;
+  for (std::size_t i = 6; i-- > 2;) length = length << 8U | static_cast<unsigned char>(bytes[i]);
+  return length == bytes.size();
+}
+
+bool is_binary_stl(std::string_view bytes) {
+  if (bytes.size() < StlLayout::kHead) return false;
+  return bytes.size() == StlLayout::kHead + StlLayout::triangle_count(bytes) * StlLayout::kTriangle;
+}
+
+std::string_view without_mark(std::string_view bytes) {
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+  return bytes;
+}
+
+bool is_ply(std::string_view head) { return head.starts_with("ply\n") || head.starts_with("ply\r"); }
+
+// The first word that is not in a comment.
+std::string_view first_word(std::string_view head) {
+  text::PlainLines lines(head);
+  for (text::TextLine line; lines.next(line);) {
+    std::string_view rest = line.text.substr(0, line.text.find('#'));
+    const std::string_view word = text::take_word(rest);
+    if (!word.empty()) return word;
+  }
+  return {};
+}
+
+bool is_off(std::string_view word) {
+  const std::string_view letters = word.substr(0, word.find_first_of("0123456789", 1));
+  return letters == "OFF" || letters == "COFF" || letters == "NOFF" || letters == "CNOFF" || letters == "STOFF" ||
+         letters == "4OFF" || letters == "nOFF" || letters == "STCOFF" || letters == "STNOFF" || letters == "STCNOFF";
+}
+
+// A record F 3 or F 3a: an OBJ file has no face of one vertex that comes before all vertices.
+bool is_view3d(std::string_view head) {
+  text::PlainLines lines(head);
+  for (text::TextLine line; lines.next(line);) {
+    std::string_view rest = line.text.substr(0, line.text.find('!'));
+    const std::string_view word = text::take_word(rest);
+    if (word == "F" || word == "f") {
+      const std::string_view geometry = text::take_word(rest);
+      return (geometry == "3" || text::in_lower_case(geometry) == "3a") && text::trimmed(rest).empty();
+    }
+    if (!word.empty() && word != "T" && word != "t" && word != "C" && word != "c" && word != "/") return false;
+  }
+  return false;
+}
+
+bool is_obj_keyword(std::string_view word) {
+  constexpr std::array<std::string_view, 13> kKeywords = {"v", "vn",     "vt",     "vp", "f",  "g",   "o",
+                                                          "s", "mtllib", "usemtl", "l",  "fo", "call"};
+  return std::ranges::find(kKeywords, word) != kKeywords.end();
+}
+
+// The extension in lower case, with its dot.
+std::string lower_extension(const std::filesystem::path& path) {
+  return text::in_lower_case(path.extension().string());
+}
+
+// By the content, otherwise by the extension, otherwise OBJ.
+Format format_of(std::string_view bytes, const std::filesystem::path& path) {
+  const std::string_view head = without_mark(bytes.substr(0, kLookedAt));
+  const std::string extension = lower_extension(path);
+  if (is_ply(head)) return Format::kPly;
+  if (is_binary_stl(bytes)) return Format::kStlBinary;
+  const std::string_view word = first_word(head);
+  const bool binary = contains(head, std::string_view("\0", 1));
+  if (text::in_lower_case(word) == "solid") return binary ? Format::kStlBinary : Format::kStlText;
+  if (is_off(word)) return Format::kOff;
+  if (extension == ".ply") return Format::kPly;
+  if (extension == ".off") return Format::kOff;
+  if (extension == ".stl") return binary ? Format::kStlBinary : Format::kStlText;
+  if (extension == ".vs3" || (extension != ".obj" && is_view3d(head))) return Format::kView3d;
+  return Format::kObj;
+}
+
+// By the content; by the extension only if the content tells nothing and does not begin as that of an OBJ file.
+std::optional<ForeignKind> foreign_kind(std::string_view bytes, const std::filesystem::path& path) {
+  const std::string_view head = without_mark(bytes.substr(0, kLookedAt));
+  if (is_binary_stl(bytes)) return std::nullopt;
+  for (const Signature& signature : kSignatures) {
+    if (head.starts_with(signature.bytes)) return signature.kind;
+  }
+  if (is_dxf(head)) return kDxf;
+  if (is_iges(head)) return kIges;
+  if (is_3ds(bytes)) return k3ds;
+  std::string_view start = head;
+  start.remove_prefix(std::min(start.find_first_not_of(" \t\r\n"), start.size()));
+  if (start.starts_with("ISO-10303-21;")) return step_kind(head);
+  if (start.starts_with("<")) return markup_kind(head);
+  if (start.starts_with("{")) return json_kind(head);
+  if (format_of(bytes, path) != Format::kObj || is_obj_keyword(first_word(head))) return std::nullopt;
+  const std::string extension = lower_extension(path);
+  const auto* const known = std::ranges::find(kExtensions, extension, &Extension::name);
+  if (known != kExtensions.end()) return known->kind;
+  return extension == ".obj" ? std::nullopt : text_kind(head);
+}
+
+}  // namespace
 }  // namespace formats
 
 namespace {
@@ -88,6 +374,50 @@ SceneFiles scene_files(const Scene& scene, const std::filesystem::path& path, En
   }
   result.losses = losses.take();
   return result;
+}
+
+// --- Reading ---
+
+namespace {
+
+constexpr const char* kAnyFormat = "an OBJ, PLY, STL, OFF or View3D file";
+
+}  // namespace
+
+Scene read_scene(std::string_view bytes, const std::filesystem::path& path, const SceneOptions& options) {
+  const kernel::StandardArithmetic arithmetic;
+  const std::string file = path.string();
+  if (bytes.empty())
+    throw InputError({file, 0, "is empty", "there is nothing to compute with", std::string("give ") + kAnyFormat});
+  if (const auto kind = formats::foreign_kind(bytes, path)) {
+    throw InputError({file, 0, "is " + std::string(kind->name),
+                      std::string("exactff reads OBJ, PLY, STL, OFF and View3D"),
+                      "convert it, for example with " + std::string(kind->converter)});
+  }
+  const formats::Format format = formats::format_of(bytes, path);
+  switch (format) {
+    case formats::Format::kPly:
+      return formats::read_ply(bytes, path, options);
+    case formats::Format::kStlBinary:
+      return formats::read_stl_binary(bytes, path, options);
+    default:
+      break;
+  }
+  text::require_text(bytes, file, kAnyFormat);
+  switch (format) {
+    case formats::Format::kStlText:
+      return formats::read_stl_text(bytes, path, options);
+    case formats::Format::kOff:
+      return formats::read_off(bytes, path, options);
+    case formats::Format::kView3d:
+      return formats::read_view3d(bytes, path, options);
+    default:
+      return formats::read_obj(bytes, path, options);
+  }
+}
+
+Scene read_scene(const std::filesystem::path& path, const SceneOptions& options) {
+  return SceneInside::read_from(path, read_scene(text::read_file(path, kAnyFormat), path, options));
 }
 
 }  // namespace exactff

@@ -1,6 +1,7 @@
 // The writers, each of one format. They return the bytes of the file and add what it does not hold to `losses`.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -44,5 +45,49 @@ void append_point(std::string& out, const Vec3& point);
 [[nodiscard]] std::string write_stl_text(const Scene& scene, Losses& losses);
 [[nodiscard]] std::string write_stl_binary(const Scene& scene, Losses& losses);
 [[nodiscard]] std::string write_view3d(const Scene& scene, Losses& losses);
+
+// --- Output faces ---
+
+// The faces of a scene as polygons that a format can hold.
+
+enum class Polygons {
+  kAny,          // any number of corners, not always convex or planar, but without holes
+  kFourCorners,  // convex and planar
+  kTriangles,
+};
+
+struct OutputFace {
+  FaceId face{};
+  std::vector<std::uint32_t> corners;
+};
+
+// In the order of the faces. A face that does not fit is cut at its own vertices, exactly. Faces that cannot be used
+// are left out. Faces without area are kept as they are, if the format can hold them. `format` is its name in messages.
+[[nodiscard]] std::vector<OutputFace> output_faces(const Scene& scene, Polygons polygons, const std::string& format,
+                                                   Losses& losses);
+
+// --- Output names ---
+
+// Names as a format can hold them.
+
+// No format holds line breaks, zero bytes, blanks at the ends of a name, or an empty name.
+struct NameRules {
+  bool one_word = false;          // no blanks
+  char comment = '\0';            // begins a comment
+  bool only_before_word = false;  // ... only at the beginning of a word
+  bool joins_lines = false;       // a backslash at the end of a line joins it with the next
+};
+
+// The names in their order, with '_' for what the format does not hold. They stay distinct. Tells what has changed;
+// `noun` says what is named: "patch".
+[[nodiscard]] std::vector<std::string> output_names(std::vector<std::string> names, const NameRules& rules,
+                                                    const std::string& noun, Losses& losses);
+
+[[nodiscard]] std::vector<std::string> patch_names(const Scene& scene);
+// True if all faces are in one patch with the name of faces that belong to none.
+[[nodiscard]] bool has_only_default_patch(const Scene& scene);
+
+// The name as the format can hold it.
+[[nodiscard]] std::string fit_name(std::string name, const NameRules& rules);
 
 }  // namespace exactff::formats

@@ -13,10 +13,9 @@
 #include <utility>
 
 #include "kernel/vec.h"
-#include "models/model_files.h"
 #include "models/random.h"
-#include "models/room_parts.h"
-#include "models/square_grid.h"
+#include "models/registry.h"
+#include "models/rooms.h"
 
 namespace exactff::models {
 

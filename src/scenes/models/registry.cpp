@@ -1,8 +1,9 @@
+#include "models/registry.h"
+
 #include <algorithm>
 
 #include "kernel/float_environment.h"
-#include "models/model_files.h"
-#include "text/choice_text.h"
+#include "text/settings.h"
 
 namespace exactff::models {
 

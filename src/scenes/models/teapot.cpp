@@ -18,7 +18,7 @@
 #include <span>
 #include <tuple>
 
-#include "models/model_files.h"
+#include "models/registry.h"
 
 namespace exactff::models {
 

@@ -7,7 +7,7 @@
 #include "exactff/error.h"
 #include "exactff/receiver.h"
 #include "kernel/float_environment.h"
-#include "scene/scene_data.h"
+#include "scene/scene.h"
 #include "text/csv_dialect.h"
 #include "text/csv_lines.h"
 #include "text/number_text.h"

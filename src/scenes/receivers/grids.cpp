@@ -3,7 +3,7 @@
 // The centres of u x v cells on an outline, in exact arithmetic, each rounded once at the end. Corners are p_i relative
 // to the first one, n is the Newell vector.
 //   1. A convex quadrilateral (no holes; convex seen along n): the bilinear map at ((2i+1)/2u, (2j+1)/2v).
-//   2. Any other outline: its bounding rectangle along e and f, the frame of face_plane.h.
+//   2. Any other outline: its bounding rectangle along e and f, the frame of region_shape.h.
 //   3. Of the centres of step 2, keep those strictly inside.
 //   4. On several faces, move each centre along n onto the face under it.
 #include <algorithm>
@@ -13,8 +13,7 @@
 #include "exactff/receiver.h"
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"
-#include "receivers/face_plane.h"
-#include "receivers/placing.h"
+#include "receivers/own_pieces.h"
 #include "receivers/region_shape.h"
 #include "text/phrases.h"
 

@@ -3,18 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
 #include <tuple>
 
 #include "exactff/receiver.h"
-#include "kernel/exact_vec.h"
 #include "kernel/float_environment.h"
+#include "kernel/numbers.h"
+#include "kernel/poll.h"
 #include "kernel/vec.h"
 #include "receivers/own_pieces.h"
-#include "receivers/placing.h"
-#include "scene/extent.h"
+#include "scene/selections.h"
 #include "scene/shaft_tree.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
@@ -234,6 +235,153 @@ bool HidingFaces::are_possible_on(FaceId id) {
     if (found) break;
   }
   return possible_[id] = found;
+}
+
+// --- Near misses ---
+
+// Receivers that were probably meant to lie on a face.
+
+namespace {
+
+constexpr std::size_t kMostTold = 3;
+
+std::string name_of_receiver(std::span<const Receiver> receivers, std::size_t i) {
+  return "'" + (receivers[i].id.empty() ? std::to_string(i + 1) : receivers[i].id) + "'";
+}
+
+bool looks_away_from(const Face& face, const Vec3& normal) {
+  const double largest = kernel::max_norm(normal), size = kernel::max_norm(face.newell);
+  if (!(largest > 0.0) || !(size > 0.0)) return false;
+  const auto share = [](const Vec3& v, double by) { return Vec3{v.x / by, v.y / by, v.z / by}; };
+  return kernel::dot(share(normal, largest), share(face.newell, size)) < 0.0;
+}
+
+}  // namespace
+
+std::vector<std::size_t> place_on_faces(const Scene& scene, std::span<Receiver> receivers,
+                                        std::optional<double> tolerance) {
+  std::vector<std::size_t> without;
+  kernel::Steps steps("faces of receivers", receivers.size());
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    steps.take();
+    Receiver& receiver = receivers[i];
+    if (!receiver.on.empty()) continue;
+    receiver.on = find_faces(scene, receiver, tolerance.value_or(face_tolerance(scene, receiver.point))).faces;
+    if (receiver.on.empty()) without.push_back(i);
+  }
+  return without;
+}
+
+NearMisses near_misses(const Scene& scene, std::span<const Receiver> receivers) {
+  const kernel::StandardArithmetic arithmetic;
+  NearMisses misses;
+  std::vector<std::string> worst, others;  // the former see nothing
+  const auto tell = [&](std::size_t i, const std::string& what, std::vector<std::string>& list) {
+    if (list.size() < kMostTold) list.push_back(name_of_receiver(receivers, i) + ", " + what);
+  };
+  HidingFaces hiding(scene);
+  std::vector<FaceId> hiding_faces;
+  kernel::Steps steps("faces of receivers", receivers.size());
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    steps.take();
+    const Receiver& receiver = receivers[i];
+    if (!receiver.on.empty()) {
+      if (const std::vector<FaceId> before = hiding.of(receiver); !before.empty()) {
+        ++misses.hidden;
+        hiding_faces.insert(hiding_faces.end(), before.begin(), before.end());
+        const bool own = std::ranges::find(receiver.on, before.front()) != receiver.on.end();
+        tell(i,
+             "on '" + scene.name_of(receiver.on) + "', behind " +
+                 (own ? "another triangle of it" : "'" + scene.name_of(before.front()) + "'"),
+             worst);
+      }
+      if (!looks_away_from(scene.face(receiver.on.front()), receiver.normal)) continue;
+      ++misses.turned;
+      tell(i, "turned against '" + scene.name_of(receiver.on) + "'", others);
+      continue;
+    }
+    const NearFaces near = find_faces(scene, receiver, face_tolerance(scene, receiver.point));
+    if (near.faces.empty() || near.side == 0) continue;
+    // What counts is the side that the receiver looks away from.
+    const bool behind = (near.side < 0) != near.turned;
+    ++(behind ? misses.behind : misses.in_front);
+    misses.furthest = std::max(misses.furthest, near.distance);
+    tell(i,
+         text::short_number(near.distance, 2) + (near.side < 0 ? " behind '" : " in front of '") +
+             scene.name_of(near.faces.front()) + "'",
+         behind ? worst : others);
+  }
+  misses.mends_hidden = flag_words(scene, "--transparent", selections_of(scene, std::move(hiding_faces)));
+  misses.first = std::move(worst);
+  std::ranges::move(others, std::back_inserter(misses.first));
+  if (misses.first.size() > kMostTold) misses.first.resize(kMostTold);
+  return misses;
+}
+
+std::vector<std::string> sentences(const NearMisses& misses, std::size_t receivers, std::string_view noun) {
+  std::vector<std::string> told;
+  const std::string of_all = " of " + text::counted(receivers, noun);
+  if (misses.behind + misses.in_front > 0) {
+    std::string sentence = std::to_string(misses.behind + misses.in_front) + of_all +
+                           " are given without a face, within " + text::short_number(misses.furthest, 2) + " of one";
+    if (misses.behind > 0) {
+      sentence += "; " + std::to_string(misses.behind) + " of them look through it from behind, so it hides everything";
+    }
+    told.push_back(sentence + "; --on auto places them on their faces");
+  }
+  if (misses.hidden > 0) {
+    told.push_back(std::to_string(misses.hidden) + of_all +
+                   " lie on a face, but behind another one that is nearly in its plane and hides everything; " +
+                   (misses.mends_hidden.empty() ? "--transparent NAME,NAME,..." : misses.mends_hidden) +
+                   " lets light pass through it");
+  }
+  if (misses.turned > 0) {
+    told.push_back(std::to_string(misses.turned) + of_all +
+                   " look away from the front of the face that they lie on; --flip turns a patch round");
+  }
+  if (told.empty()) return told;
+  std::string examples = "the first: ";
+  for (std::size_t i = 0; i < misses.first.size(); ++i) examples += (i > 0 ? "; " : "") + misses.first[i];
+  told.push_back(std::move(examples));
+  return told;
+}
+
+// --- Distance ---
+
+namespace {
+
+// All coordinates are multiplied by this power of two first, so that no difference of large coordinates overflows.
+constexpr double kScale = 0x1p-3;
+
+Vec3 scaled_difference(const Vec3& p, const Vec3& q) {
+  return {kScale * p.x - kScale * q.x, kScale * p.y - kScale * q.y, kScale * p.z - kScale * q.z};
+}
+
+double outside(double value, double low, double high) {
+  return std::max({kScale * low - kScale * value, kScale * value - kScale * high, 0.0});
+}
+
+double distance_from_plane(const Face& face, const Vec3& from_corner) {
+  return std::abs(kernel::dot(kernel::unit(face.newell), from_corner));
+}
+
+}  // namespace
+
+double relative_distance_from_face(const Scene& scene, FaceId id, const Vec3& point) {
+  const Face& face = scene.face(id);
+  if (face.rings.empty() || face.rings.front().empty()) return 0.0;
+  const Vec3& first = scene.vertices()[face.rings.front().front()];
+  Box box{first, first};
+  for (const std::uint32_t v : face.rings.front()) box.include(scene.vertices()[v]);
+  const auto& [low, high] = box;
+  const Vec3 extent = scaled_difference(high, low);
+  const double diagonal = std::hypot(extent.x, extent.y, extent.z);
+  const double from_box =
+      std::hypot(outside(point.x, low.x, high.x), outside(point.y, low.y, high.y), outside(point.z, low.z, high.z));
+  const double distance = std::max(from_box, distance_from_plane(face, scaled_difference(point, first)));
+  if (distance == 0.0) return 0.0;
+  if (diagonal == 0.0) return std::numeric_limits<double>::infinity();
+  return std::max(distance / diagonal - face.out_of_plane, 0.0);
 }
 
 }  // namespace exactff

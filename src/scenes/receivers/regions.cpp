@@ -16,10 +16,9 @@
 #include "exactff/receiver.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
-#include "receivers/placing.h"
-#include "scene/extent.h"
-#include "scene/misuse.h"
-#include "scene/places.h"
+#include "receivers/own_pieces.h"
+#include "scene/scene.h"
+#include "scene/shaft_tree.h"
 
 namespace exactff {
 namespace {

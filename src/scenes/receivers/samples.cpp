@@ -19,7 +19,7 @@
 #include "exactff/receiver.h"
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"
-#include "receivers/placing.h"
+#include "receivers/own_pieces.h"
 #include "scene/face_points.h"
 
 namespace exactff {

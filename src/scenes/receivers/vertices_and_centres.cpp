@@ -16,9 +16,8 @@
 #include "kernel/poll.h"
 #include "kernel/vec.h"
 #include "receivers/own_pieces.h"
-#include "receivers/placing.h"
 #include "receivers/region_shape.h"
-#include "scene/places.h"
+#include "scene/scene.h"
 
 namespace exactff {
 namespace {

@@ -13,10 +13,9 @@
 #include <map>
 #include <numeric>
 
-#include "kernel/plane_through.h"
-#include "scene/junctions.h"
-#include "scene/places.h"
-#include "scene/scene_data.h"
+#include "kernel/filter.h"
+#include "scene/scene.h"
+#include "scene/solids.h"
 
 namespace exactff {
 

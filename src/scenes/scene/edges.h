@@ -118,4 +118,13 @@ class SceneEdges {
 // The edges of the scene, found at the first call; safe to call from several threads.
 const SceneEdges& scene_edges(const Scene& scene);
 
+// --- Connectedness ---
+
+// How far the pieces of a scene are connected, and what a search for silhouettes may therefore save.
+
+// About how many edges there are for each that is a silhouette from a typical point. Of a soup of faces 1, of a box
+// less than 3, of a mesh of n triangles about sqrt(n) / 3. Found at the first call, in about linear time; safe to call
+// from several threads.
+[[nodiscard]] double edges_per_silhouette(const Scene& scene);
+
 }  // namespace exactff

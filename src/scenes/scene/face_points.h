@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "exactff/geometry.h"
-#include "kernel/exact_vec.h"
+#include "kernel/numbers.h"
 
 namespace exactff {
 

@@ -1,6 +1,7 @@
 // The inside of a planar polygon with holes, as convex parts.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -28,5 +29,13 @@ struct PlanarRegion {
 // as they were given; `normal` has any length.
 PlanarRegion planar_region(std::span<const Vec3> vertices, const FacePoints& points, const PlanePoints& plane,
                            const kernel::ExactVec3& normal);
+
+// --- Edge crossing ---
+
+// Finds edges of rings that cross.
+
+// Two edges of `points` that cross in their interiors, the one of lower index first; any such pair, or nullopt if there
+// is none. Edges may touch, overlap and have no length. O(n log n), exact.
+std::optional<std::pair<EdgeIndex, EdgeIndex>> find_crossing(const FacePoints& points, const PlanePoints& plane);
 
 }  // namespace exactff

@@ -1,21 +1,20 @@
-#include "exactff/scene.h"
+#include "scene/scene.h"
 
 #include <fnmatch.h>
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <numeric>
+#include <set>
 #include <tuple>
 #include <utility>
 
 #include "kernel/float_environment.h"
-#include "scene/misuse.h"
-#include "scene/places.h"
-#include "scene/scene_data.h"
+#include "kernel/vec.h"
 #include "text/encoding.h"
-#include "text/fnv1a.h"
-#include "text/nearest_names.h"
-#include "text/numbered_name.h"
+#include "text/hashes.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/text_lines.h"
 
@@ -302,6 +301,101 @@ std::size_t Scene::open_edge_count() const {
     run = end;
   }
   return open;
+}
+
+// --- Misuse ---
+
+void refuse_argument(const std::string& what, const std::string& why) {
+  throw std::invalid_argument(what + " (" + why + ")");
+}
+
+namespace {
+
+void require_index(std::size_t index, std::size_t count, const std::string& kind, const std::string& kinds) {
+  if (index < count) return;
+  refuse_argument("there is no " + kind + " " + std::to_string(index),
+                  "the scene has " + std::to_string(count) + " " + kinds + ", counted from 0");
+}
+
+}  // namespace
+
+void require_face(const Scene& scene, FaceId face) {
+  require_index(index_of(face), scene.faces().size(), "face", "faces");
+}
+
+void require_of_scene(const Scene& scene, SceneId made_by, const char* what) {
+  if (made_by == scene.id()) return;
+  refuse_argument("the " + std::string(what) + " belongs to another scene", "its ids have another meaning there");
+}
+
+void require_scene(const Scene* scene) {
+  if (scene == nullptr)
+    refuse_argument("the request has no scene", "set the pointer to a scene that lives as long as the request");
+}
+
+void require_of_scene(const Scene& scene, const Selection& selection) {
+  if (selection.scene != kAnyScene) require_of_scene(scene, selection.scene, "selection");
+  require_index(index_of(selection.patch), scene.patches().size(), "patch", "patches");
+  if (!selection.face) return;
+  require_face(scene, *selection.face);
+  if (scene.face(*selection.face).patch == selection.patch) return;
+  refuse_argument("face " + std::to_string(index_of(*selection.face)) + " does not belong to patch '" +
+                      scene.patch(selection.patch).name + "'",
+                  "a selection is a patch or one of its own faces");
+}
+
+// --- Summary ---
+
+namespace {
+
+std::vector<MaterialId> materials_of(const Scene& scene, const Patch& patch) {
+  std::vector<MaterialId> used;
+  std::set<MaterialId> seen;
+  for (const FaceId face : patch.faces) {
+    const MaterialId material = scene.face(face).material;
+    if (seen.insert(material).second) used.push_back(material);
+  }
+  return used;
+}
+
+std::optional<Vec3> common_front(const Scene& scene, const std::vector<FaceId>& faces) {
+  constexpr double kSameWay = 0.999;  // the cosine of about 2.6 degrees
+  Vec3 mean;
+  for (const FaceId face : faces) mean = kernel::sum(mean, kernel::unit_by_inverse(scene.face(face).newell));
+  mean = kernel::unit_by_inverse(mean);
+  for (const FaceId face : faces) {
+    const Vec3 n = kernel::unit_by_inverse(scene.face(face).newell);
+    if (kernel::dot(n, mean) < kSameWay) return std::nullopt;
+  }
+  return faces.empty() ? std::nullopt : std::optional(mean);
+}
+
+// An estimate. Clamped to finite numbers, as the areas of faces are.
+double sum_of_areas(double a, double b) { return std::min(a + b, std::numeric_limits<double>::max()); }
+
+}  // namespace
+
+PatchSummary summarise(const Scene& scene, PatchId id) {
+  const Patch& patch = scene.patch(id);
+  const std::vector<FaceId> faces = scene.faces_of({id, {}});
+  PatchSummary summary{patch.name, patch.faces.size(), 0.0, common_front(scene, faces), materials_of(scene, patch)};
+  for (const FaceId face : faces) {
+    summary.area = sum_of_areas(summary.area, scene.face(face).area);
+    summary.emits = summary.emits || scene.material(scene.face(face).material).emits();
+  }
+  return summary;
+}
+
+std::vector<PatchSummary> summarise(const Scene& scene) {
+  std::vector<PatchSummary> rows;
+  for (std::size_t i = 0; i < scene.patches().size(); ++i) rows.push_back(summarise(scene, static_cast<PatchId>(i)));
+  return rows;
+}
+
+double total_area(const std::vector<PatchSummary>& rows) {
+  double area = 0.0;
+  for (const PatchSummary& row : rows) area = sum_of_areas(area, row.area);
+  return area;
 }
 
 }  // namespace exactff

@@ -8,10 +8,9 @@
 #include "kernel/expect.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
-#include "scene/misuse.h"
-#include "scene/scene_data.h"
+#include "scene/scene.h"
 #include "scene/triangulation.h"
-#include "text/numbered_name.h"
+#include "text/names.h"
 #include "text/text_lines.h"
 
 namespace exactff {

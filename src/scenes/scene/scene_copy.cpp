@@ -3,10 +3,62 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <memory>
+#include <set>
 #include <utility>
+
+#include "kernel/float_environment.h"
+#include "scene/scene.h"
+#include "scene/selections.h"
+#include "text/phrases.h"
+#include "text/text_lines.h"
 
 namespace exactff {
 namespace {
+
+// --- Glass ---
+
+// Materials that let light through in the program that made the scene, but occlude here.
+
+constexpr std::size_t kMostWarnings = 20;
+
+Problem warning(const Scene& scene, const Material& material, const std::vector<FaceId>& faces) {
+  const std::vector<Selection> users = selections_of(scene, faces);
+  const std::string flag = flag_words(scene, "--transparent", users);
+  return {material.file, material.line,
+          "material " + text::in_quotes(material.name, text::kShownName) + " lets light through (" +
+              material.see_through + "), but " + listed(scene, users) + (users.size() == 1 ? " occludes" : " occlude"),
+          "every material is treated as opaque",
+          "if it does not hide what is behind it, give " +
+              (flag.empty() ? "the patches of this material to --transparent" : flag)};
+}
+
+// One warning for each such material that is used by a face which is not transparent.
+std::vector<Problem> warnings_of_opaque_glass(const Scene& scene) {
+  std::vector<std::vector<FaceId>> users(scene.materials().size());
+  for (std::size_t i = 0; i < scene.faces().size(); ++i) {
+    const Face& face = scene.faces()[i];
+    const bool occludes = face.piece_count > 0 && !face.transparent;
+    if (occludes && !scene.material(face.material).see_through.empty())
+      users[index_of(face.material)].push_back(static_cast<FaceId>(i));
+  }
+  std::vector<Problem> warnings;
+  std::size_t others = 0;
+  for (std::size_t m = 0; m < users.size(); ++m) {
+    if (users[m].empty()) continue;
+    if (warnings.size() == kMostWarnings) {
+      ++others;
+    } else {
+      warnings.push_back(warning(scene, scene.materials()[m], users[m]));
+    }
+  }
+  if (others > 0)
+    warnings.push_back({.what = text::counted(others, "more material") + " let light through, but occlude"});
+  return warnings;
+}
+
+// --- Copies to be added to ---
 
 using Rings = std::vector<std::vector<std::uint32_t>>;
 
@@ -70,6 +122,104 @@ std::optional<Scene> near_origin(const Scene& scene) {
   const Vec3 origin{origin_of(ranges[0]), origin_of(ranges[1]), origin_of(ranges[2])};
   if (!(extent > 0.0) || (origin.x == 0.0 && origin.y == 0.0 && origin.z == 0.0)) return std::nullopt;
   return SceneCopy(scene, origin).take();
+}
+
+// --- Copies in which some faces are turned round or transparent ---
+
+namespace {
+
+void flip(Face& face) {
+  for (std::vector<std::uint32_t>& ring : face.rings) std::reverse(ring.begin(), ring.end());
+  face.newell = {0.0 - face.newell.x, 0.0 - face.newell.y, 0.0 - face.newell.z};  // never -0
+  face.flipped = !face.flipped;
+  if (face.file_normals != FileNormals::kNone) {
+    face.file_normals = face.file_normals == FileNormals::kAgree ? FileNormals::kContradict : FileNormals::kAgree;
+  }
+}
+
+void flip(Piece& piece, std::vector<std::uint32_t>& corners) {
+  const auto first = corners.begin() + piece.first_corner;
+  std::reverse(first, first + piece.corner_count);
+  std::swap(piece.frame[1], piece.frame[2]);
+}
+
+std::unique_ptr<SceneInside::Data> copy_of(const SceneInside::Data& data) {
+  auto copy = std::make_unique<SceneInside::Data>();
+  copy->file = data.file;
+  copy->files = data.files;
+  copy->vertices = data.vertices;
+  copy->materials = data.materials;
+  copy->patches = data.patches;
+  copy->patch_by_name = data.patch_by_name;
+  copy->faces = data.faces;
+  copy->pieces = data.pieces;
+  copy->corners = data.corners;
+  copy->warnings = data.warnings;
+  copy->warnings_of_glass = data.warnings_of_glass;
+  return copy;
+}
+
+std::set<FaceId> all_faces_of(const Scene& scene, std::span<const Selection> selections) {
+  std::set<FaceId> all;
+  for (const Selection& selection : selections) {
+    const std::vector<FaceId> faces = scene.faces_of(selection);
+    all.insert(faces.begin(), faces.end());
+  }
+  return all;
+}
+
+}  // namespace
+
+Scene Scene::with_flipped(std::span<const Selection> selections) const {
+  const kernel::StandardArithmetic arithmetic;
+  auto copy = copy_of(data());
+  for (const FaceId id : all_faces_of(*this, selections)) {
+    Face& face = copy->faces[index_of(id)];
+    flip(face);
+    for (std::uint32_t p = 0; p < face.piece_count; ++p) flip(copy->pieces[face.first_piece + p], copy->corners);
+  }
+  return Scene(std::move(copy));
+}
+
+Scene Scene::with_transparent(std::span<const Selection> selections) const {
+  auto copy = copy_of(data());
+  for (const FaceId id : all_faces_of(*this, selections)) {
+    Face& face = copy->faces[index_of(id)];
+    face.transparent = true;
+    for (std::uint32_t p = 0; p < face.piece_count; ++p) copy->pieces[face.first_piece + p].transparent = true;
+  }
+  Scene changed(std::move(copy));
+  changed.set_warnings_of_glass();
+  return changed;
+}
+
+void Scene::set_warnings_of_glass() {
+  std::vector<Problem>& warnings = data_->warnings;
+  warnings.erase(warnings.begin(), warnings.begin() + static_cast<std::ptrdiff_t>(data_->warnings_of_glass));
+  std::vector<Problem> glass = warnings_of_opaque_glass(*this);
+  data_->warnings_of_glass = glass.size();
+  warnings.insert(warnings.begin(), std::move_iterator(glass.begin()), std::move_iterator(glass.end()));
+}
+
+namespace {
+
+template <class Changed>
+std::vector<Selection> changed_faces(const Scene& scene, const Changed& changed) {
+  std::vector<FaceId> faces;
+  for (std::size_t i = 0; i < scene.faces().size(); ++i) {
+    if (changed(scene.faces()[i])) faces.push_back(static_cast<FaceId>(i));
+  }
+  return selections_of(scene, faces);
+}
+
+}  // namespace
+
+std::vector<Selection> Scene::flipped() const {
+  return changed_faces(*this, [](const Face& face) { return face.flipped; });
+}
+
+std::vector<Selection> Scene::transparent() const {
+  return changed_faces(*this, [](const Face& face) { return face.transparent; });
 }
 
 }  // namespace exactff

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "exactff/geometry.h"
+#include "exactff/scene.h"
 
 namespace exactff {
 
@@ -219,5 +220,18 @@ void visit_pieces_near(const Scene& scene, const Box& box, double reach, const V
                                    {{-1, 0, 0}, -size.x}, {{0, -1, 0}, -size.y}, {{0, 0, -1}, -size.z}};
   shaft_tree(scene).query(low, half_spaces, visit);
 }
+
+// --- Extent ---
+
+// The size of a scene: estimates for diagnoses, on which no value depends.
+
+struct Extent {
+  double largest = 0.0;   // coordinate in magnitude
+  double diameter = 0.0;  // diagonal of the bounding box, clamped to finite doubles
+  double scale = 1.0;     // the power of two that brings the largest coordinate into [1/2, 1)
+};
+
+// Of the faces with area. Computed at the first call; safe to call from several threads.
+const Extent& extent(const Scene& scene);
 
 }  // namespace exactff

@@ -5,16 +5,16 @@
 // So are a box and what it stands on told apart, and two rooms with a common wall.
 #include "scene/solids.h"
 
-#include <algorithm>
 #include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <utility>
 
-#include "kernel/exact_vec.h"
+#include "kernel/numbers.h"
 #include "kernel/vec.h"
 #include "scene/edges.h"
-#include "scene/junctions.h"
-#include "scene/places.h"
+#include "scene/scene.h"
 
 namespace exactff {
 namespace {
@@ -171,7 +171,7 @@ class SolidFinder {
 
   // Edges that are not plain, and those that have a part in common with one that is contested. If a solid has an edge
   // as a whole, and what touches it there in parts, then neither may be paired before both are cut. Of very many, none
-  // is cut (junctions.h).
+  // is cut (solids.h).
   void find_contested() {
     std::vector<std::uint32_t> waiting;
     const auto contest = [&](std::uint32_t id) {
@@ -336,6 +336,53 @@ Solids::Solids(const Scene& scene) : of_piece_(scene.pieces().size(), kNone) {
     solids_[solid].box.include(box.high);
   }
   for (Solid& solid : solids_) solid.sign = sign_of_volume(scene, solid.pieces);
+}
+
+// --- Junctions ---
+
+namespace {
+
+// Between the ends of the edge, on its line.
+bool is_inside(std::uint32_t place, const EdgeOfPiece& edge, std::span<const Vec3> vertices) {
+  if (place == edge.low || place == edge.high) return false;
+  const Vec3 &x = vertices[place], &a = vertices[edge.low], &b = vertices[edge.high];
+  const auto within = [](double u, double from, double to) {
+    return std::min(from, to) <= u && u <= std::max(from, to);
+  };
+  return within(x.x, a.x, b.x) && within(x.y, a.y, b.y) && within(x.z, a.z, b.z) && are_straight(a, x, b);
+}
+
+}  // namespace
+
+bool are_straight(const Vec3& a, const Vec3& middle, const Vec3& c) {
+  return is_zero(cross(kernel::exact_difference(a, middle).v, kernel::exact_difference(c, middle).v));
+}
+
+void cut_at_junctions(std::vector<EdgeOfPiece>& edges, std::span<const Vec3> vertices) {
+  if (edges.size() > kMostCut) return;
+  std::vector<std::uint32_t> ends;
+  for (const EdgeOfPiece& edge : edges) ends.insert(ends.end(), {edge.low, edge.high});
+  const auto x_of = [&](std::uint32_t place) { return vertices[place].x; };
+  std::ranges::sort(ends, {}, [&](std::uint32_t place) { return std::pair(x_of(place), place); });
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  const auto end_inside = [&](const EdgeOfPiece& edge) {
+    const auto [least, largest] = std::minmax({x_of(edge.low), x_of(edge.high)});
+    const auto first = std::ranges::lower_bound(ends, least, {}, x_of);
+    const auto last = std::ranges::upper_bound(ends, largest, {}, x_of);
+    const auto found = std::find_if(first, last, [&](std::uint32_t end) { return is_inside(end, edge, vertices); });
+    return found == last ? std::nullopt : std::optional(*found);
+  };
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const std::optional<std::uint32_t> inside = end_inside(edges[e]);
+    if (!inside) continue;
+    // Two edges with the direction of the whole. Both are looked at later.
+    const auto [low, high, piece, upwards] = edges[e];
+    edges.push_back({std::min(low, *inside), std::max(low, *inside), piece, upwards == (low < *inside)});
+    edges.push_back({std::min(high, *inside), std::max(high, *inside), piece, upwards == (*inside < high)});
+    edges[e] = edges.back();
+    edges.pop_back();
+    --e;
+  }
 }
 
 }  // namespace exactff

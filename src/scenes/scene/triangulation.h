@@ -1,4 +1,5 @@
-// Exact classification of one face: is it planar, is it convex, and what are its convex pieces?
+// Exact classification of one face: is it planar, is it convex, and what are its convex pieces? Also triangles of faces
+// that are not planar, and of pieces.
 #pragma once
 
 #include <array>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "exactff/scene.h"
+#include "scene/face_points.h"
 
 namespace exactff {
 
@@ -37,8 +39,28 @@ struct CutFace {
 };
 
 // Exact in every decision. An exactly planar face keeps its shape and is cut into convex parts, as few as merging a
-// constrained triangulation gives. A face that is not planar is cut into triangles by the rule of `ear_clipping.h`.
+// constrained triangulation gives. A face that is not planar is cut into triangles by the rule of clip_ears.
 // Requires valid indices and finite coordinates; the rings are otherwise arbitrary.
 CutFace cut_face(std::span<const Vec3> vertices, const std::vector<Ring>& rings);
+
+// --- Ear clipping ---
+
+// Triangles for a polygon that is not exactly planar, by a rule that depends only on the polygon.
+
+using TriangleIndices = std::array<std::size_t, 3>;
+
+// A quadrilateral takes the valid diagonal that holds the vertex of lowest index; a larger polygon is clipped ear
+// by ear, each time the valid ear whose tip has the lowest index. Valid: seen along the Newell vector, both
+// triangles (the ear) run counter-clockwise, and no vertex that could hide behind the ear's base lies in the
+// closed ear, unless at the position of one of its corners. `index` gives each point's index in the file.
+// Start and direction of the ring do not matter. Empty if no valid diagonal or ear is left.
+std::optional<std::vector<TriangleIndices>> clip_ears(const PlanePoints& plane, std::span<const std::uint32_t> index);
+
+// --- Triangles ---
+
+// The triangles of a piece of a face.
+
+// Vertex indices, at the corners of the piece and counter-clockwise from the front. They cover the piece exactly.
+[[nodiscard]] std::vector<std::vector<std::uint32_t>> triangles_of(const Scene& scene, const Piece& piece);
 
 }  // namespace exactff

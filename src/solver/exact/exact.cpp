@@ -11,25 +11,119 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <span>
 #include <stdexcept>
+#include <vector>
 
 #include "contour/contour.h"
-#include "exact/certified.h"
-#include "exact/fraction.h"
+#include "exact/quick_tier.h"
 #include "exact/source_planes.h"
 #include "exact/workspace.h"
+#include "exactff/enclosure.h"
 #include "kernel/ball.h"
+#include "kernel/expect.h"
 #include "kernel/float_environment.h"
+#include "kernel/numbers.h"
 #include "kernel/vec.h"
-#include "scene/misuse.h"
+#include "scene/scene.h"
+#include "visibility/boolean_walk.h"
 #include "visibility/visible_boundary.h"
 
 namespace exactff {
 
-using exact::PlaneShare;
+using kernel::Integer;
+using kernel::Rational;
 using visibility::PlaneVisibility;
 using visibility::SourcePlane;
+
+namespace {
+
+// --- The visible fraction of a source in several planes, correctly rounded ---
+
+// One plane: its area is projected_area * |normal| / |normal[axis]|, irrational in general.
+struct PlaneShare {
+  kernel::Rational fraction;        // visible over whole, in [0, 1]
+  kernel::Rational projected_area;  // > 0
+  kernel::ExactVec3 normal;
+  int axis = 0;
+};
+
+// Each area is r sqrt(q) with r rational and q = |normal|^2. For one plane the ratio is rational. For several planes,
+// balls of increasing precision decide unless the ratio is the midpoint of two doubles, which is rational. Square roots
+// of integers are linearly independent over the rationals if no product of two of them is a square (Besicovitch 1940).
+// So the ratio is rational only if it is the same for every class of commensurable planes. That is tested exactly,
+// because balls would never decide a midpoint.
+
+struct Area {
+  Rational coefficient;  // r
+  Integer radicand;      // q
+};
+
+Area area_of(const PlaneShare& plane) {
+  return {plane.projected_area / abs(plane.normal[plane.axis]), dot(plane.normal, plane.normal)};
+}
+
+Ball ratio_at(std::span<const PlaneShare> planes, long bits) {
+  using kernel::to_ball;
+  Ball visible(bits), whole(bits);
+  for (const PlaneShare& plane : planes) {
+    const auto [coefficient, radicand] = area_of(plane);
+    const Ball area = sqrt(to_ball(radicand, bits)) * to_ball(coefficient, bits);
+    whole = whole + area;
+    visible = visible + area * to_ball(plane.fraction, bits);
+  }
+  return visible / whole;
+}
+
+struct CommensurableClass {
+  Integer radicand;
+  Rational visible;
+  Rational whole;
+};
+
+void add_to_classes(std::vector<CommensurableClass>& classes, const PlaneShare& plane) {
+  const Area area = area_of(plane);
+  for (CommensurableClass& one : classes) {
+    const Integer product = area.radicand * one.radicand;
+    if (!mpz_perfect_square_p(product.get_mpz_t())) continue;
+    // sqrt(q) = sqrt(q q') / q' sqrt(q')
+    const Rational coefficient = area.coefficient * Rational(sqrt(product)) / one.radicand;
+    one.visible += coefficient * plane.fraction;
+    one.whole += coefficient;
+    return;
+  }
+  classes.push_back({area.radicand, area.coefficient * plane.fraction, area.coefficient});
+}
+
+// The ratio if it is rational, else empty.
+std::optional<Rational> rational_ratio(std::span<const PlaneShare> planes) {
+  std::vector<CommensurableClass> classes;
+  for (const PlaneShare& plane : planes) add_to_classes(classes, plane);
+  const Rational ratio = classes.front().visible / classes.front().whole;
+  const bool same = std::all_of(classes.begin(), classes.end(),
+                                [&](const CommensurableClass& one) { return one.visible == ratio * one.whole; });
+  return same ? std::optional(ratio) : std::nullopt;
+}
+
+// Sum of fraction * area over the sum of areas, rounded to the nearest double, ties to even. Requires at least one
+// plane.
+double visible_fraction(std::span<const PlaneShare> planes) {
+  EXACTFF_EXPECT(!planes.empty());
+  const Rational& first = planes.front().fraction;
+  const auto equals_first = [&](const PlaneShare& plane) { return plane.fraction == first; };
+  if (std::all_of(planes.begin(), planes.end(), equals_first)) return kernel::nearest_double(first);
+
+  constexpr long kFirstBits = 128;
+  constexpr long kBitsBeforeTheExactTest = 512;
+  for (long bits = kFirstBits;; bits *= 2) {
+    if (const std::optional<double> nearest = EnclosureInside::of(ratio_at(planes, bits)).nearest()) return *nearest;
+    if (bits != kBitsBeforeTheExactTest) continue;
+    if (const std::optional<Rational> ratio = rational_ratio(planes)) return kernel::nearest_double(*ratio);
+  }
+}
+
+}  // namespace
 
 ExactSource::ExactSource(const Scene& scene, const Selection& selection) {
   const kernel::StandardArithmetic arithmetic;
@@ -154,7 +248,7 @@ void set_fraction(const std::vector<PlaneShare>& shares, FormFactor& result) {
     return std::all_of(shares.begin(), shares.end(), [&](const PlaneShare& share) { return share.fraction == whole; });
   };
   result.visible_part = all_are(0) ? VisiblePart::kNothing : all_are(1) ? VisiblePart::kAll : VisiblePart::kSome;
-  result.visible_fraction = shares.empty() ? 0.0 : exact::visible_fraction(shares);
+  result.visible_fraction = shares.empty() ? 0.0 : visible_fraction(shares);
 }
 
 void sort_unique(std::vector<FaceId>& faces) {
@@ -389,6 +483,52 @@ void exact_form_factor(const Scene& scene, const Receiver& receiver, const Exact
 bool behind_every_face(const FormFactor& result) {
   return !result.planes.empty() && std::all_of(result.planes.begin(), result.planes.end(),
                                                [](const PlaneRecord& p) { return p.outcome == Outcome::kBehind; });
+}
+
+// --- Drawing ---
+
+// The exact geometry rounded to doubles. No value depends on anything here.
+
+namespace {
+
+Loop lift_ring(const exact::Lift& lift, const kernel::Ring& ring) {
+  Loop loop;
+  for (const kernel::Direction& corner : ring) loop.corners.push_back(lift(corner.exact));
+  return loop;
+}
+
+PlaneDrawing draw(const visibility::View& view, const visibility::SourcePlane& plane) {
+  const visibility::PlaneGeometry seen = find_geometry(view, plane);
+  const exact::Lift lift(plane.normal.exact, plane.point, view.x);
+  PlaneDrawing drawing;
+  drawing.normal = exact::rounded(plane.normal.exact);
+  if (side_of(plane, view.x) <= 0) return drawing;
+  for (const kernel::Ring& ring : seen.source) drawing.source.push_back(lift_ring(lift, ring));
+  for (const kernel::Ring& ring : seen.clipped) drawing.clipped_source.push_back(lift_ring(lift, ring));
+  for (const visibility::Occluder& occluder : seen.occluders) {
+    drawing.shadows.push_back({occluder.face, lift_ring(lift, occluder.ring)});
+  }
+  for (const visibility::RegionLoop& loop : seen.visible) {
+    Loop drawn{{}, loop.hole};
+    for (const visibility::Point2& corner : loop.corners) {
+      drawn.corners.push_back(lift(seen.frame->to_direction(corner)));
+    }
+    if (!seen.frame->keeps_orientation()) std::reverse(drawn.corners.begin(), drawn.corners.end());
+    drawing.visible.push_back(std::move(drawn));
+  }
+  return drawing;
+}
+
+}  // namespace
+
+std::vector<PlaneDrawing> draw_visibility(const Scene& scene, const Receiver& receiver, const ExactSource& source) {
+  const kernel::StandardArithmetic arithmetic;
+  exact::check_arguments(scene, receiver, source);
+  const visibility::View view(scene, receiver);
+  std::vector<PlaneDrawing> drawings;
+  for (const visibility::SourcePlane& plane : ExactSourceInside::planes(source).planes)
+    drawings.push_back(draw(view, plane));
+  return drawings;
 }
 
 }  // namespace exactff

@@ -1,6 +1,5 @@
 #include "exact/quick_tier.h"
 
-#include <algorithm>
 #include <limits>
 
 namespace exactff::exact {

@@ -1,11 +1,9 @@
 #include "exact/visible_share.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "exact/workspace.h"
-#include "kernel/expect.h"
 #include "visibility/visible_boundary.h"
 
 namespace exactff::exact {

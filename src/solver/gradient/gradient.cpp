@@ -1,21 +1,217 @@
 #include "gradient/gradient.h"
 
-#include <algorithm>
-#include <utility>
-
-#include "gradient/derivative.h"
-#include "gradient/moving_arcs.h"
-#include "kernel/ball.h"
+#include "kernel/poll.h"
 #include "kernel/vec.h"
 
 namespace exactff::gradient {
 
 using contour::ArcSum;
 using contour::MovingArc;
+using contour::QuickCorner;
+using contour::QuickPiece;
 using kernel::ExactVec3;
+using kernel::Rational;
 using kernel::RationalVec3;
+using kernel::to_rational;
+using visibility::BoundaryPiece;
+using visibility::CornerId;
+using visibility::EdgeCovers;
+using visibility::EdgeId;
+using visibility::Outlines;
+using visibility::Parameter;
 using visibility::PlaneQuery;
 using visibility::VisibleBoundary;
+
+// --- Moving arcs ---
+
+namespace {
+
+bool is_in_one_of(std::span<const SightResult> planes, const ExactVec3& normal) {
+  return std::ranges::any_of(planes, [&](const SightResult& plane) { return is_zero(cross(plane.normal, normal)); });
+}
+
+class EdgeArcs {
+ public:
+  EdgeArcs(const PlaneQuery& query, EdgeCovers& found) : x_(to_rational(query.view.x)), found_(found) {
+    const visibility::SourcePlane& plane = query.plane;
+    normal_ = to_rational(plane.normal.exact);
+    offset_ = dot(normal_, to_rational(plane.point) - x_);
+  }
+
+  void add(std::span<const SightResult> except, std::vector<MovingArc>& arcs) {
+    for (const EdgeCovers::Part& part : found_.parts()) {
+      kernel::poll();
+      const BoundaryPiece piece = found_.exact(part);
+      MovingArc arc{
+          piece.a * piece.begin.l + piece.b * piece.begin.m, piece.a * piece.end.l + piece.b * piece.end.m, {}};
+      const ExactVec3 pole = cross(arc.begin, arc.end);
+      if (is_zero(pole) || is_in_one_of(except, pole)) continue;
+      const Outlines::Edge& edge = found_.outlines().edge(part.edge);
+      const RationalVec3 a = point_at(edge.a), along = point_at(edge.b) - a, moment = cross(a, along);
+      arc.nearness = cross(along, moment) * Rational(1 / dot(moment, moment));
+      arcs.push_back(std::move(arc));
+    }
+  }
+
+ private:
+  // Relative to x. A corner that is not a vertex lies in the source's plane.
+  [[nodiscard]] RationalVec3 point_at(CornerId corner) {
+    Outlines& outlines = found_.outlines();
+    if (const auto vertex = outlines.vertex(corner)) return to_rational(outlines.position(*vertex)) - x_;
+    const RationalVec3 direction = to_rational(outlines.exact(corner));
+    return direction * Rational(offset_ / dot(normal_, direction));
+  }
+
+  RationalVec3 x_, normal_;
+  Rational offset_;
+  EdgeCovers& found_;
+};
+
+// The arcs of the boundary in one plane through x, from one of its pieces. The profile is that of the query.
+void add_arcs_of_plane(const PlaneQuery& query, Profile& profile, const Outlines::Edge& edge,
+                       std::vector<MovingArc>& arcs) {
+  for (const SightArc& found : SightPlane(query, profile, edge).arcs()) {
+    // If x moves away from N, what is seen grows by the gain: it lies on the other side of the arc.
+    if (!is_zero(found.gain_back)) arcs.push_back({found.begin, found.end, found.gain_back});
+  }
+}
+
+// Adds all arcs of the boundary, without their lines: those of V.
+void add_contour_arcs(const visibility::VisibleBoundary& boundary, std::vector<MovingArc>& arcs) {
+  boundary.for_each_piece([&](const BoundaryPiece& piece) {
+    MovingArc arc{piece.a * piece.begin.l + piece.b * piece.begin.m, piece.a * piece.end.l + piece.b * piece.end.m, {}};
+    if (!is_zero(cross(arc.begin, arc.end))) arcs.push_back(std::move(arc));
+  });
+}
+
+// Adds the arcs of the boundary of one plane of the source, except those in the given planes through x.
+//
+// The edge engine's arcs come with their edges. Of the Booleans' boundary only the planes through x are used: the lines
+// in each plane are found again from what meets it (kinks.h). So the two ways share little.
+void add_moving_arcs(const PlaneQuery& query, const visibility::VisibleBoundary& boundary,
+                     std::span<const SightResult> except, std::vector<MovingArc>& arcs) {
+  if (boundary.empty()) return;
+  if (boundary.edges() != nullptr) {
+    EdgeArcs(query, *boundary.edges()).add(except, arcs);
+    return;
+  }
+  visibility::BoundaryRequest request = query.request;
+  request.culling = ShaftCulling::kTree;
+  const PlaneQuery closed{query.view, query.plane, request};
+  Profile profile;
+  profile.gather(closed);
+  for_each_plane(boundary, query.view.normal().exact, [&](const ExactVec3& pole) {
+    if (!is_in_one_of(except, pole)) add_arcs_of_plane(closed, profile, profile.edge_in_plane(pole), arcs);
+  });
+}
+
+}  // namespace
+
+// --- Derivative ---
+
+bool is_determined(const Ball& ball, Derivative& result) {
+  EnclosureInside::set(result.enclosure, ball);
+  if (result.enclosure.contains(0.0)) return false;
+  const std::optional<double> nearest = result.enclosure.nearest();
+  if (!nearest || !std::isfinite(*nearest)) return false;
+  result.value = *nearest;
+  result.status = result.value == 0.0 ? DerivativeStatus::kUnderflow : DerivativeStatus::kCertified;
+  return true;
+}
+
+bool is_determined(double hi, double lo, double error, Derivative& result) {
+  const Ball ball = kernel::ball_around(hi, lo, error);
+  const std::optional<double> nearest = kernel::nearest_around(hi, lo, error);
+  if (!nearest) return is_determined(ball, result);
+  EnclosureInside::set(result.enclosure, ball);
+  result.value = *nearest;
+  result.status = DerivativeStatus::kCertified;
+  return true;
+}
+
+void set_zero(Derivative& result) {
+  result = {};
+  EnclosureInside::set(result.enclosure, Ball());
+}
+
+void set_none(Derivative& result) {
+  result.value = std::numeric_limits<double>::quiet_NaN();
+  result.status = DerivativeStatus::kNone;
+  EnclosureInside::set(result.enclosure, Ball());
+}
+
+Ball over_turn_and_length(const kernel::ExactVec3& n, long bits) {
+  return kernel::to_ball(1.0, bits) / (twice(kernel::pi(bits)) * sqrt(kernel::to_ball(dot(n, n), bits)));
+}
+
+// --- Quick arcs ---
+
+namespace {
+
+constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+}  // namespace
+
+void QuickArcs::add(const visibility::PlaneQuery& query, const visibility::VisibleBoundary& boundary) {
+  if (boundary.empty()) return;
+  if (boundary.edges() == nullptr) {
+    sum_.decline();
+    return;
+  }
+  translate(query, *boundary.edges());
+  const std::span lines = std::span(lines_).first(edges_.size());
+  sum_.add(pieces_, lines, boundary.edges()->outlines().scale_exponent());
+}
+
+// Sets pieces_ and lines_.
+void QuickArcs::translate(const visibility::PlaneQuery& query, EdgeCovers& found) {
+  using kernel::double_double::Bounded;
+  static_assert(Parameter::kAtBegin == QuickPiece::kAtA && Parameter::kAtEnd == QuickPiece::kAtB);
+  Outlines& outlines = found.outlines();
+  plane_ = &query.plane;
+  const QuickCorner s = contour::quick_corner(plane_->point, outlines.x(), outlines.scale_exponent());
+  offset_ = {};
+  for (int i = 0; i < 3; ++i) offset_ = offset_ + plane_->fine_normal[i] * Bounded{s.hi[i], s.lo[i], s.error};
+  number_.assign(outlines.edges().size(), kNone);
+  corner_number_.assign(outlines.corner_count(), kNone);
+  edges_.clear();
+  corners_.clear();
+  pieces_.clear();
+  const auto end = [&](EdgeId line) { return line < Parameter::kAtBegin ? number_of_line(outlines, line) : line; };
+  for (const EdgeCovers::Part& part : found.parts()) {
+    pieces_.push_back({number_of_line(outlines, part.edge), end(part.begin.line), end(part.end.line)});
+  }
+  if (lines_.size() < edges_.size()) lines_.resize(edges_.size());
+  sum_.make_lines(corners_, edges_, std::span(lines_).first(edges_.size()));
+}
+
+std::uint32_t QuickArcs::number_of_line(Outlines& outlines, EdgeId id) {
+  if (number_[id] != kNone) return number_[id];
+  const Outlines::Edge edge = outlines.edge(id);
+  number_[id] = static_cast<std::uint32_t>(edges_.size());
+  edges_.push_back({number_of_corner(outlines, edge.a), number_of_corner(outlines, edge.b)});
+  return number_[id];
+}
+
+std::uint32_t QuickArcs::number_of_corner(Outlines& outlines, CornerId id) {
+  if (corner_number_[id] == kNone) {
+    corner_number_[id] = static_cast<std::uint32_t>(corners_.size());
+    corners_.push_back(point_at(outlines, id));
+  }
+  return corner_number_[id];
+}
+
+// Relative to x. A corner that is not a vertex lies in the source's plane.
+QuickCorner QuickArcs::point_at(Outlines& outlines, CornerId corner) const {
+  if (const auto vertex = outlines.vertex(corner)) {
+    return contour::quick_corner(outlines.position(*vertex), outlines.x(), outlines.scale_exponent());
+  }
+  const QuickCorner* fine = outlines.fine(corner);
+  return contour::lifted(fine != nullptr ? *fine : contour::quick_corner(outlines.exact(corner)), plane_->fine_normal,
+                         offset_);
+}
+
+// --- Gradient ---
 
 void PointGradient::start(const visibility::View& view, const Request& request) {
   x_ = view.x;

@@ -4,8 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "gradient/derivative.h"
-#include "gradient/moving_arcs.h"
+#include "gradient/gradient.h"
 #include "kernel/expect.h"
 #include "kernel/poll.h"
 #include "kernel/vec.h"

@@ -2,12 +2,13 @@
 // derivative by x.
 //
 // For one plane of the source:
-// 1. Gather what touches the closed shaft (profile.h), also in the source's plane. Stop if one piece hides more than
+// 1. Gather what touches the closed shaft (sight_lines.h), also in the source's plane. Stop if one piece hides more
+// than
 //    the source: its vertices may move a little, too.
 // 2. Look for vertices by which there is no derivative: in each plane through x with different lines, or with an edge
 //    that lies in the source's plane (vertex_sight.h).
 // 3. Add up the arcs of the visible boundary, for each vertex that moves them: those of the edge engine in
-//    double-double (contour/quick_gradient.h), unless a plane cuts their lines, and where that does not suffice in
+//    double-double (contour/quick_contour.h), unless a plane cuts their lines, and where that does not suffice in
 //    balls. Of the Booleans' boundary only the planes through x are used: the lines in each are those that step 2
 //    finds.
 #pragma once
@@ -19,10 +20,8 @@
 #include <vector>
 
 #include "exactff/exact.h"
-#include "gradient/profile.h"
-#include "gradient/quick_arcs.h"
-#include "gradient/sight_groups.h"
-#include "gradient/vertex_motion.h"
+#include "gradient/gradient.h"
+#include "gradient/sight_lines.h"
 #include "gradient/vertex_sight.h"
 #include "visibility/visible_edges.h"
 

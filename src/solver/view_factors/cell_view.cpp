@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "kernel/poll.h"
-#include "view_factors/crossing_order.h"
+#include "view_factors/cell.h"
 
 namespace exactff::view_factors {
 namespace {

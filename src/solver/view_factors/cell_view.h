@@ -42,8 +42,7 @@
 #include <utility>
 #include <vector>
 
-#include "view_factors/event_bound.h"
-#include "view_factors/pair_memory.h"
+#include "view_factors/cell.h"
 #include "view_factors/sight.h"
 
 namespace exactff::view_factors {

@@ -1,4 +1,5 @@
-// The terms of a cell's formula in discs (disc_formula.h), at points of the unit square that is mapped to the cell.
+// The terms of a cell's formula in discs (certified_integral.h), at points of the unit square that is mapped to the
+// cell.
 //
 // A part of the boundary from P to Q on the line through A and B, with the unit direction l = (B - A) / |B - A|, has
 // the term (Eq. (4); F is the sum of the terms, with the opposite sign of the part's)
@@ -26,9 +27,39 @@
 #include <array>
 #include <vector>
 
-#include "view_factors/disc_space.h"
+#include "kernel/disc.h"
 
 namespace exactff::view_factors {
+
+// --- Disc space ---
+
+// Vectors of discs (kernel/disc.h), and points and planes in them, in the unit of Point::at.
+
+using kernel::Disc;
+struct Plane;
+struct Point;
+
+struct DiscVec {
+  Disc x, y, z;
+};
+
+inline DiscVec operator+(const DiscVec& a, const DiscVec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline DiscVec operator-(const DiscVec& a, const DiscVec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline DiscVec operator*(const DiscVec& a, const Disc& k) { return {a.x * k, a.y * k, a.z * k}; }
+inline Disc dot(const DiscVec& a, const DiscVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline DiscVec cross(const DiscVec& a, const DiscVec& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline Disc squared_length(const DiscVec& a) { return square(a.x) + square(a.y) + square(a.z); }
+// Fails for a vector that may be zero.
+inline DiscVec unit(const DiscVec& a) { return a * inverse(square_root(squared_length(a))); }
+
+// Coordinates that are doubles have the radius 0, so that differences lose nothing.
+[[nodiscard]] DiscVec enclose(const Point& point);
+// The plane's normal, of length 1.
+[[nodiscard]] DiscVec unit_normal(const Plane& plane);
+
+// --- Disc terms ---
 
 // A function k0 + k2 t + s (k1 + k3 t).
 struct Bilinear {

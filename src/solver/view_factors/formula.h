@@ -11,14 +11,14 @@
 
 namespace exactff::view_factors {
 
-// A point in balls, in integer units (exact_space.h).
+// A point in balls, in integer units (exact_scene.h).
 struct BallPoint {
   Ball x, y, z;
 };
 [[nodiscard]] BallPoint ball_point(const Point& point, long bits);
 
 // For points of a cell: F(x -> visible part of the source). Analytic inside the cell. Where the ends of a part have
-// changed places, it counts with the opposite sign (event_bound.h).
+// changed places, it counts with the opposite sign (cell.h).
 class Formula {
  public:
   // Keeps a reference to the points.

@@ -1,17 +1,13 @@
 #include "view_factors/pair.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
 
 #include "kernel/poll.h"
-#include "kernel/vec.h"
 #include "text/phrases.h"
 #include "view_factors/certified_integral.h"
-#include "view_factors/disc_formula.h"
-#include "view_factors/quadrature.h"
 
 namespace exactff::view_factors {
 namespace {
@@ -25,7 +21,7 @@ constexpr double kLargestMismatch = 0x1p-16;       // of the self-check, whose p
 constexpr double kStepAside = 0x1p-30;             // in units of Point::at
 constexpr double kLeastMargin = 0x1p-24;           // the same
 constexpr std::uint64_t kSignsForACell = 1 << 15;  // more than where few occluders lie between
-constexpr std::size_t kCrowd = 256;                // occluders; an event cell of more is not worth a look at its centre
+constexpr std::size_t kManyOccluders = 256;        // an event cell of more is not worth a visit to its centre
 constexpr double kShareOfParent = 0.125;           // of a cell's error that its halves may have
 // Whether the difference of two rules tells their error. Where an edge is nearer than this, F may have a peak that both
 // rules miss. At 1.5 radii, two points more divide the error by 2.6^4 = 46.
@@ -358,7 +354,7 @@ double Pair::slope_bound(const Candidates& candidates, const Vec3& centre, doubl
 // By the formula of a point inside, and a bound on how far F can be from it elsewhere.
 void Pair::add_event(Cell cell, std::size_t depth, Candidates candidates, const std::vector<CrossingTriple>& triples,
                      std::vector<Share>& shares) {
-  if (triples.empty() && candidates.size() > kCrowd) {
+  if (triples.empty() && candidates.size() > kManyOccluders) {
     return add_dark(std::move(cell), std::move(candidates), view_.way(depth), nullptr, shares);
   }
   const Point centre = point_inside(cell, sight_.points.units());

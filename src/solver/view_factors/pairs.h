@@ -11,11 +11,9 @@
 
 #include "exactff/view_factors.h"
 #include "kernel/disc.h"
-#include "view_factors/columns.h"
+#include "view_factors/prepared_patch.h"
 
 namespace exactff::view_factors {
-
-struct PreparedPatch;
 
 class Pairs {
  public:
@@ -35,7 +33,7 @@ class Pairs {
   [[nodiscard]] double area_to(std::size_t column) const;
   // The share of the area of a row's patch that is not buried: exactly 1 if nothing is, exactly 0 if all is.
   [[nodiscard]] kernel::Disc exposed_share(std::size_t row) const;
-  // Whether closed surfaces stand around all that the row's patch sees (enclosures.h), if that can be proved.
+  // Whether closed surfaces stand around all that the row's patch sees (seen_parts.h), if that can be proved.
   [[nodiscard]] bool is_enclosed(std::size_t row) const;
   // Whether all that the row's patch sees lies within this one of the scene's closed surfaces, by edges that are cut at
   // T-junctions, or beyond its holes, if that can be proved.
@@ -62,5 +60,15 @@ class Pairs {
   std::vector<std::vector<std::size_t>> entries_;  // by pair
   std::vector<std::size_t> pair_of_;               // by entry
 };
+
+// --- View factor ---
+
+// One view factor between two patches that are prepared.
+
+// Whether A_i F_ij = A_j F_ji holds for the factors of this column, and may be used.
+[[nodiscard]] bool is_symmetric(const PreparedPatch& column, const ViewFactorOptions& options);
+
+// F_ji, from f = F_ij. Requires A_i F_ij = A_j F_ji.
+[[nodiscard]] ViewFactor transpose(const ViewFactor& f, const PreparedPatch& from, const PreparedPatch& to);
 
 }  // namespace exactff::view_factors

@@ -1,16 +1,34 @@
-// A patch of a matrix: what all of its factors share, prepared once.
+// A patch of a matrix: its convex parts, and what else all of its factors share, prepared once.
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "kernel/disc.h"
-#include "view_factors/columns.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/seen_parts.h"
 #include "view_factors/sight.h"
 
 namespace exactff::view_factors {
+
+// --- Columns ---
+
+// What the columns of a matrix are. Only between patches of the scene is the factor of the other direction wanted, too.
+
+enum class Columns {
+  kPatches,
+  // Each is a patch of copies of faces, turned or not. Where closed surfaces hide these, that is proved first
+  // (seen_parts.h).
+  kBacks,
+  // Each is a patch through which something is seen that lies beyond.
+  kWindows,
+  // Each is a patch whose fronts lie all around the scene and look inward, at infinity as it were, and that hides
+  // nothing. The factor to it is what the occluders leave of all directions.
+  kSurroundings,
+};
+
+// --- Prepared patch ---
 
 struct PreparedPatch {
   // Throws InputError for a patch without area.
@@ -47,5 +65,37 @@ struct PreparedPatch {
 // Whether a closed surface is proved to hide one part of either patch from the other, if the column asks for that.
 [[nodiscard]] bool are_separated(const SeenParts& seen, const PreparedPatch& row, std::size_t i,
                                  const PreparedPatch& column, std::size_t j);
+
+// --- Patch parts ---
+
+// A patch as convex parts that do not overlap.
+
+// The patch's panels (scene/panels.h); where they overlap in one oriented plane, each point belongs to the first.
+// kExposed: without what is buried (scene/contacts.h).
+enum class PartsOf { kWhole, kExposed };
+[[nodiscard]] std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch,
+                                         PartsOf what = PartsOf::kWhole);
+
+// Positive in front.
+[[nodiscard]] Plane plane_of(const Part& part, const Units& units);
+
+// For sampling: the part, cut along the lines in which other faces meet its plane from the front. Form factors jump
+// there. At most eight lines cut it, the longest that do. A line cuts, from side to side, the fragments whose boxes it
+// meets. Transparent faces do not cut.
+[[nodiscard]] std::vector<Part> cut_at_contacts(const ExactScene& scene, const Part& part);
+
+// In squares of the unit of Point::at: an estimate within a few roundings.
+[[nodiscard]] double area_of(const std::vector<Part>& parts);
+// The same, enclosed.
+[[nodiscard]] kernel::Disc enclosed_area_of(const std::vector<Part>& parts, const Units& units);
+
+// A mean over the parts, with their weights, changes by at most this times its range if their areas are as wrong as
+// roundings make them.
+[[nodiscard]] double error_of_shares(const std::vector<Part>& parts, const Units& units);
+
+// The area of a patch with these parts, in squares of the unit of Point::at and of the scene's unit of length: both
+// positive and finite. Throws InputError otherwise.
+[[nodiscard]] std::pair<double, double> areas_of(const ExactScene& scene, const Selection& patch,
+                                                 const std::vector<Part>& parts);
 
 }  // namespace exactff::view_factors

@@ -1,5 +1,5 @@
 // Tampieri's Eq. (4) over a boundary that is constant on a cell, in doubles, at four points at a time. Certified
-// integrals are those of disc_formula.h.
+// integrals are those of certified_integral.h.
 //
 // Roundings. A coordinate is at most 1 and carries a few roundings, so a difference of two points errs by less than
 // e = 2^-50. This turns the direction of a vertex by e / distance, and the plane through x and an edge by

@@ -2,15 +2,98 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
+#include <optional>
+#include <span>
 
-#include "view_factors/pair_choice.h"
-#include "view_factors/view_factor.h"
+#include "view_factors/pairs.h"
 
 namespace exactff::view_factors {
 namespace {
 
+// --- Pair choice ---
+
+// Pairs of parts: which of the two is cut into cells.
+
+// A part, and the source that checks the cells which see it if it is a whole face or several.
+struct PairEnd {
+  const Part& part;
+  std::shared_ptr<const ExactSource> whole;
+};
+
+class PairChoice {
+ public:
+  // Keeps references. `either`: A_i F_ij = A_j F_ji holds, so either of two parts may be cut.
+  PairChoice(const ExactScene& scene, PairMemory& memory, bool either)
+      : scene_(scene), memory_(memory), either_(either) {}
+
+  // Cuts `from`, or the one that fewer lines seem to cut. `pieces`: all that may occlude, by ascending index. Null if
+  // the two do not see each other.
+  [[nodiscard]] std::unique_ptr<Pair> choose(std::span<const std::uint32_t> pieces, const PairEnd& from,
+                                             const PairEnd& to);
+  // What the pieces leave open of all directions; `whole`: a source all around the scene.
+  [[nodiscard]] std::unique_ptr<Pair> of_open(std::span<const std::uint32_t> pieces, const Part& receiver,
+                                              std::shared_ptr<const ExactSource> whole);
+
+ private:
+  [[nodiscard]] std::unique_ptr<Pair> make(std::span<const std::uint32_t> pieces, const PairEnd& receiver,
+                                           const PairEnd& source);
+
+  const ExactScene& scene_;
+  PairMemory& memory_;
+  bool either_;
+  std::size_t made_ = 0;  // numbers the pairs in the memory
+};
+
+// The faces of the part's panel as a source, if they are nothing else.
+std::shared_ptr<const ExactSource> source_of(const Scene& scene, const Selection& patch, const Part& part) {
+  if (!part.is_piece) return nullptr;
+  const Panels& all = panels(scene);
+  Selection source = patch;
+  if (all.is_joined(part.panel)) {
+    const Sheet& sheet = all.sheet_of(part.panel);
+    if (sheet.panel_count > 1 || faces_of(scene, part) != scene.faces_of(patch)) return nullptr;
+  } else {
+    if (scene.pieces_of(part.face).size() > 1) return nullptr;
+    source.face = part.face;
+  }
+  return std::make_shared<const ExactSource>(scene, source);
+}
+
+// One for each part of the patch, to which they refer.
+std::vector<PairEnd> ends_of(const Scene& scene, const PreparedPatch& patch) {
+  std::vector<PairEnd> ends;
+  for (const Part& part : patch.parts) ends.push_back({part, source_of(scene, patch.selection, part)});
+  return ends;
+}
+
+std::unique_ptr<Pair> PairChoice::choose(std::span<const std::uint32_t> pieces, const PairEnd& from,
+                                         const PairEnd& to) {
+  std::unique_ptr<Pair> pair = make(pieces, from, to);
+  if (pair == nullptr || !either_) return pair;
+  const std::size_t events = pair->events();
+  if (events == 0) return pair;
+  std::unique_ptr<Pair> other = make(pieces, to, from);
+  return other->events() < events ? std::move(other) : std::move(pair);
+}
+
+std::unique_ptr<Pair> PairChoice::of_open(std::span<const std::uint32_t> pieces, const Part& receiver,
+                                          std::shared_ptr<const ExactSource> whole) {
+  return std::make_unique<Pair>(scene_.scene, sight_of_open(scene_, pieces, receiver), receiver.face, std::move(whole),
+                                memory_, made_++);
+}
+
+std::unique_ptr<Pair> PairChoice::make(std::span<const std::uint32_t> pieces, const PairEnd& receiver,
+                                       const PairEnd& source) {
+  std::optional<Sight> sight = sight_of(scene_, pieces, receiver.part, source.part);
+  if (!sight) return nullptr;
+  return std::make_unique<Pair>(scene_.scene, std::move(*sight), receiver.part.face, source.whole, memory_, made_++);
+}
+
 // What is below 2^-14 decides nothing between few and many cells. A stage's limits are those of its accuracy.
+// --- Refinement ---
+
 constexpr int kFirstStage = -10, kStep = -10;  // exponents of the stages' accuracies
 constexpr std::uint64_t kFirstPause = std::uint64_t{1} << 20, kNoPause = std::uint64_t{1} << 62;
 constexpr double kLeastAccuracy = 0x1p-50;                 // of a stage

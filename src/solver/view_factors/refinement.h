@@ -18,7 +18,7 @@
 // interval so far is the result, it never yields a wider one.
 //
 // Where points may be cheaper, the refinement pauses, also within step 1: whenever it has done twice as much
-// (view_factor.cpp).
+// (pairs.cpp).
 #pragma once
 
 #include <functional>

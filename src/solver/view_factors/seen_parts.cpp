@@ -1,12 +1,232 @@
 #include "view_factors/seen_parts.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
 #include <numeric>
 #include <utility>
 
-#include "visibility/seen_pieces.h"
+#include "kernel/poll.h"
+#include "kernel/vec.h"
+#include "view_factors/prepared_patch.h"
 
 namespace exactff::view_factors {
+
+// --- Enclosures ---
+
+namespace {
+
+// Directions that few edges meet. If all of them meet some, nothing is proved.
+constexpr std::array<std::array<int, 3>, 6> kDirections{
+    {{71, 37, 53}, {-43, 67, 59}, {61, -73, 47}, {41, 79, -31}, {-83, -29, 89}, {97, -19, -23}}};
+
+int sign_of_dot(const Plane& plane, const std::array<int, 3>& direction) {
+  Integer sum;
+  for (std::size_t i = 0; i < 3; ++i) sum += plane.exact[i] * direction[i];
+  return sgn(sum);
+}
+
+// From just above a point of a plane on, in a direction: back through the point, if the direction leads below the
+// plane.
+class Ray {
+ public:
+  Ray(const Point& from, const std::array<int, 3>& direction, bool leads_below)
+      : from_(from), direction_(direction), leads_below_(leads_below) {
+    for (std::size_t i = 0; i < 3; ++i) to_.exact[i] = direction[i];  // the point at infinity
+  }
+
+  // +1: it crosses the piece from the back to the front; -1: the other way; 0: it does not meet it. Empty if it meets
+  // the piece's edge or runs in its plane.
+  [[nodiscard]] std::optional<int> crossing(const ExactScene& scene, const ExactPiece& piece) const {
+    if (misses(piece.box)) return 0;
+    const int from = side_of(piece.plane, from_), towards = sign_of_dot(piece.plane, direction_);
+    if (from == 0 && towards == 0) return std::nullopt;
+    if (from * towards > 0 || (from == 0 && !leads_below_)) return 0;
+    bool has_left = false, has_right = false, meets_line = false;
+    for (std::size_t i = 0; i < piece.corners.size(); ++i) {
+      const Point &p = scene.vertices[piece.corners[i]],
+                  &q = scene.vertices[piece.corners[i + 1 == piece.corners.size() ? 0 : i + 1]];
+      const int side = side_of_edge(p, q);
+      has_left = has_left || side > 0;
+      has_right = has_right || side < 0;
+      meets_line = meets_line || side == 0;
+    }
+    if (has_left && has_right) return 0;
+    if (meets_line) return std::nullopt;
+    return towards;
+  }
+
+ private:
+  // Certainly: the slabs of the box are widened by far more than all roundings, since no coordinate exceeds 1.
+  [[nodiscard]] bool misses(const Box& box) const {
+    constexpr double kGap = 0x1p-40;
+    double first = 0.0, last = Box::kInfinity;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double at = kernel::coordinate(from_.at, axis), step = direction_[static_cast<std::size_t>(axis)];
+      const double low = kernel::coordinate(box.low, axis) - kGap - at,
+                   high = kernel::coordinate(box.high, axis) + kGap - at;
+      first = std::max(first, (step > 0.0 ? low : high) / step);
+      last = std::min(last, (step > 0.0 ? high : low) / step);
+    }
+    return first > last;
+  }
+
+  // The sign of det(from, to, p, q).
+  [[nodiscard]] int side_of_edge(const Point& p, const Point& q) const {
+    const Homogeneous plane = join(from_, to_, p);
+    Integer sum;
+    for (std::size_t i = 0; i < 4; ++i) sum += plane[i] * q.exact[i];
+    return sgn(sum);
+  }
+
+  const Point& from_;
+  const std::array<int, 3>& direction_;
+  const bool leads_below_;
+  Point to_;
+};
+
+// On the ray, near its start.
+std::optional<int> winding_number(const ExactScene& scene, const ExactSurface& surface, const Ray& ray) {
+  int sum = 0;
+  for (const std::uint32_t piece : surface.pieces) {
+    const std::optional<int> crossing = ray.crossing(scene, scene.pieces[piece]);
+    if (!crossing) return std::nullopt;
+    sum += *crossing;
+  }
+  return sum;
+}
+
+// The centre of three corners.
+Point inner_point(const Part& part, const Units& units) {
+  Homogeneous sum{0, 0, 0, 0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Homogeneous &corner = part.corners[i].exact, &second = part.corners[(i + 1) % 3].exact,
+                      &third = part.corners[(i + 2) % 3].exact;
+    const Integer others = second[3] * third[3];
+    for (std::size_t k = 0; k < 3; ++k) sum[k] += corner[k] * others;
+    sum[3] = 3 * corner[3] * others;
+  }
+  return make_point(std::move(sum), units);
+}
+
+// Whether some of the points lie in front of the plane, and some behind it.
+template <class Points, class PointOf = std::identity>
+std::pair<bool, bool> sides_of(const Plane& plane, const Points& points, PointOf point_of = {}) {
+  std::pair<bool, bool> found{false, false};
+  for (const auto& point : points) {
+    const int side = side_of(plane, point_of(point));
+    found.first = found.first || side > 0;
+    found.second = found.second || side < 0;
+  }
+  return found;
+}
+
+// Of a part.
+class Interior {
+ public:
+  Interior(const ExactScene& scene, const Part& part)
+      : scene_(scene),
+        part_(part),
+        plane_(plane_of(part, scene.units)),
+        box_(box_of(part.corners)),
+        centre_(inner_point(part, scene.units)) {
+    for (std::size_t i = 0; i < part.corners.size(); ++i) {
+      const Point &p = part.corners[i], &q = part.corners[i + 1 == part.corners.size() ? 0 : i + 1];
+      Point normal;
+      for (std::size_t k = 0; k < 3; ++k) normal.exact[k] = plane_.exact[k];  // at infinity
+      edges_.push_back(make_plane(join(p, q, normal), scene.units));
+    }
+    for (Plane& edge : edges_) {
+      if (side_of(edge, centre_) < 0) edge = make_plane(opposite(edge.exact), scene.units);
+    }
+  }
+
+  // Just above all of it, if that is known.
+  [[nodiscard]] std::optional<int> winding(const ExactSurface& surface) const {
+    if (surface.rim && !lies_before(*surface.rim)) return std::nullopt;
+    if (surface.box.is_apart_from(box_)) return 0;
+    const bool is_off =
+        std::ranges::all_of(surface.pieces, [&](std::uint32_t piece) { return keeps_off(scene_.pieces[piece]); });
+    if (!is_off) return std::nullopt;
+    for (std::array<int, 3> direction : kDirections) {
+      for (const int way : {1, -1}) {
+        for (int& component : direction) component *= way;
+        const int upwards = sign_of_dot(plane_, direction);
+        if (upwards == 0 || (surface.rim && sign_of_dot(*surface.rim, direction) <= 0)) continue;
+        const Ray ray(centre_, direction, upwards < 0);
+        if (const std::optional<int> w = winding_number(scene_, surface, ray)) return w;
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  // And what is just above it.
+  [[nodiscard]] bool lies_before(const Plane& plane) const {
+    const auto [some_before, some_behind] = sides_of(plane, part_.corners);
+    if (some_before || some_behind) return !some_behind;
+    Integer cosine;
+    for (std::size_t i = 0; i < 3; ++i) cosine += plane.exact[i] * plane_.exact[i];
+    return sgn(cosine) > 0;
+  }
+  // See the header.
+  [[nodiscard]] bool keeps_off(const ExactPiece& piece) const {
+    if (piece.box.is_apart_from(box_)) return true;
+    const auto point_of = [&](std::uint32_t corner) -> const Point& { return scene_.vertices[corner]; };
+    const auto [is_in_front, is_behind] = sides_of(plane_, piece.corners, point_of);
+    const auto [part_in_front, part_behind] = sides_of(piece.plane, part_.corners);
+    if (!is_in_front || part_in_front != part_behind) return true;
+    const bool is_whole = is_behind;  // else its corners in the plane count
+    return std::ranges::any_of(edges_, [&](const Plane& edge) {
+      return std::ranges::none_of(piece.corners, [&](std::uint32_t corner) {
+        return side_of(edge, point_of(corner)) > 0 && (is_whole || side_of(plane_, point_of(corner)) == 0);
+      });
+    });
+  }
+
+  const ExactScene& scene_;
+  const Part& part_;
+  Plane plane_;
+  Box box_;
+  Point centre_;              // inside
+  std::vector<Plane> edges_;  // through the edges, along the normal; positive inside
+};
+
+}  // namespace
+
+Enclosures::Enclosures(const ExactScene& scene)
+    : scene_(scene),
+      surfaces_(exact_surfaces(ClosedSurfaces(scene.scene, ClosedSurfaces::Edges::kCutAtJunctions), scene.pieces,
+                               scene.units)) {}
+
+Windings Enclosures::above(const Part& part) const {
+  Windings windings(surfaces_.size());
+  if (surfaces_.empty()) return windings;
+  const Interior interior(scene_, part);
+  std::ranges::transform(surfaces_, windings.begin(), [&](const ExactSurface& surface) {
+    kernel::poll();
+    return interior.winding(surface);
+  });
+  return windings;
+}
+
+bool Enclosures::are_around(const Windings& windings) const {
+  for (std::size_t i = 0; i < windings.size(); ++i) {
+    if (!surfaces_[i].rim && windings[i] && *windings[i] != 0) return true;
+  }
+  return false;
+}
+
+bool are_separated(const Windings& one, const Windings& other) {
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    if (one[i] && other[i] && *one[i] != *other[i]) return true;
+  }
+  return false;
+}
+
+// --- Seen parts ---
+
 namespace {
 
 constexpr std::size_t kFewQuestions = 4;  // of a part: more cost as much as its list

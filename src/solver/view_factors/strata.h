@@ -2,11 +2,14 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "kernel/vec.h"
-#include "view_factors/patch_parts.h"
+#include "view_factors/prepared_patch.h"
 
 namespace exactff::view_factors {
 
@@ -15,7 +18,7 @@ inline constexpr std::size_t kFewestStrata = 36;
 // Counter-based random numbers: the n-th number depends on the key alone. Different keys, independent numbers.
 class Draws {
  public:
-  Draws(std::size_t look, std::size_t stratum, std::size_t number);
+  Draws(std::size_t analysis, std::size_t stratum, std::size_t number);
   std::uint64_t bits();
   double unit();  // in [0, 1)
 
@@ -87,5 +90,119 @@ struct Reach {
 
 // Of a stratum.
 inline constexpr std::size_t kDraws = 2;
+
+// --- Split strata ---
+
+// Strata that are split where a function may be large, or differs from its control variate, so that its mean is known
+// best for a number of points.
+
+// Of a change, that a number and its control variate may differ by, since control variates change, too.
+inline constexpr double kOverChange = 1.25;
+
+// Proved of a function on a tile.
+struct Span {
+  double range = 1.0;        // it lies in [0, range]
+  double change = HUGE_VAL;  // it is within this of what it is at the middle
+};
+
+class SplitStrata {
+ public:
+  // The change is needed only of a tile that is alone in its stratum.
+  using SpanOf = std::function<Span(const Tile& tile, bool is_alone)>;
+
+  // Begins with about `count` strata of the same area. Keeps a reference to the parts.
+  SplitStrata(const std::vector<Part>& parts, std::size_t count, SpanOf span);
+
+  [[nodiscard]] const Strata& strata() const { return strata_; }
+  // Two numbers are taken for each: at two random places or, where that leaves less to chance, at the middle and at one
+  // random place.
+  [[nodiscard]] bool is_by_middle(std::size_t stratum) const { return known_[stratum].is_by_middle(); }
+  [[nodiscard]] const Span& span(std::size_t stratum) const { return known_[stratum].span; }
+  // r of StratifiedMean.
+  [[nodiscard]] double largest_term() const { return by_term_.front().size; }
+  // What its terms are expected to add to Q: what was set for the stratum that it was split from, and less with each
+  // split.
+  void set_square(std::size_t stratum, double square);
+  [[nodiscard]] double largest_square() const { return by_square_.empty() ? 0.0 : by_square_.front().size; }
+  [[nodiscard]] double sum_of_squares() const { return sum_of_squares_; }
+
+  // Cuts the stratum of the largest term or square: in two, but a triangle in three. False if it is too small.
+  bool split_largest_term() { return split(by_term_); }
+  bool split_largest_square() { return split(by_square_); }
+
+ private:
+  struct Known {
+    Span span;
+    double square = 0.0;
+    std::size_t version = 0;
+
+    [[nodiscard]] bool is_by_middle() const;
+    [[nodiscard]] double term() const;
+  };
+  struct Waiting {
+    double size;
+    std::size_t stratum, version;
+  };
+  using Heap = std::vector<Waiting>;
+
+  [[nodiscard]] static bool is_less_urgent(const Waiting& a, const Waiting& b);
+  [[nodiscard]] double share(std::size_t stratum) const { return strata_.strata[stratum].area / strata_.area; }
+  [[nodiscard]] Span span_of(const Stratum& stratum) const;
+  void push(Heap& heap, double size, std::size_t stratum);
+  void drop_old(Heap& heap) const;
+  [[nodiscard]] bool split(Heap& heap);
+  [[nodiscard]] static Known part_of(const Known& known, double share);
+  void put(std::size_t place, const Stratum& stratum, const Known& of_whole);
+  void share_out(const Stratum& whole, const Known& known, std::size_t place);
+  void cut(const Tile& tile, const Known& known, std::size_t place);
+
+  const std::vector<Part>& parts_;
+  SpanOf span_;
+  Strata strata_;
+  std::vector<Known> known_;  // by stratum
+  double sum_of_squares_ = 0.0;
+  Heap by_term_, by_square_;  // the largest first; with old versions of strata, but never in front
+};
+
+// --- Stratified mean ---
+
+// The mean over strata of a function of which nothing is known but how far it is, at most, from control variates.
+//
+// In each stratum, a few independent places are drawn. The function's mean is the sum of the means of independent terms
+// X_i, each the function at a place times the share of the area that the place stands for. Each term has a control
+// variate p_i, a function of the place of which the mean is known, chosen before the place is drawn: it may depend on
+// all that was drawn before. Let no |X_i - p_i| exceed r, wherever the place is, and let Q be the sum of (X_i - p_i)^2.
+// For any L and any c in (0, 1), chosen like r before the places, each of
+//
+//   mean >= V - e   and   mean <= V + e,   V = sum (X_i - p_i + mean of p_i),   e = (r L + psi Q / r) / c,
+//
+// with psi = -log(1 - c) - c, holds but with a probability of at most exp(-L). No stratum is believed for agreeing with
+// itself: even with Q = 0, e is more than r L. No interval that holds for all such functions can be narrower by much.
+// Let two places be drawn in each stratum, of a function in [0, R]. Without any number that meets it, it may have a
+// mean of r L: a share p_s of each stratum goes unmet with a probability of exp(-2 sum p_s).
+//
+// Proof (Fan, Grama, Liu, "Exponential inequalities for martingales with applications", Electron. J. Probab. 20, 2015;
+// Howard, Ramdas, McAuliffe, Sekhon, "Time-uniform, nonparametric, nonasymptotic confidence sequences", Ann. Stat. 49,
+// 2021). (log(1 + y) - y) / y^2 increases with y > -1. So for x >= -1, y = c x is at least -c, and
+// exp(c x - psi x^2) <= 1 + c x. With x = (X_i - p_i) / r, and d_i its mean given what came before, times r,
+//
+//   E exp(c (X_i - p_i) / r - psi (X_i - p_i)^2 / r^2) <= 1 + c d_i / r <= exp(c d_i / r),
+//
+// so E exp(c (X_i - p_i - d_i) / r - psi (X_i - p_i)^2 / r^2) <= 1, whatever came before. The product over all terms
+// has a mean of at most 1, too, and exceeds exp(L) with a probability of at most exp(-L) (Markov's inequality). The sum
+// of X_i - p_i - d_i is V less the mean. The same holds for x = (p_i - X_i) / r. Where the draws of a stratum lie in
+// different halves of it, the means of their X_i differ, but add up to what they should.
+
+struct StratifiedMean {
+  // Of the square, from before the analysis. It chooses c; the worse it is, the larger is the error.
+  double expected = 0.0;
+  double value = 0.0;
+  double square = 0.0;  // Q
+
+  // A number, its control variate at the same place, and the mean of that; `share`: of the area, that it stands for.
+  void add(double number, double control, double mean_of_control, double share);
+  // e. The mean of the function lies within it of the value, but with a probability of at most `risk`.
+  [[nodiscard]] double error(double r, double risk) const;
+};
 
 }  // namespace exactff::view_factors

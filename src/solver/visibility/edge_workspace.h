@@ -1,17 +1,54 @@
 // The memory of the edge engine, reused from one plane to the next.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "scene/panels.h"
-#include "visibility/cover_memory.h"
-#include "visibility/run_marks.h"
-#include "visibility/search_memory.h"
-#include "visibility/silhouette_walk.h"
+#include "visibility/silhouettes.h"
+#include "visibility/source_shaft.h"
 #include "visibility/visible_edges.h"
 
 namespace exactff::visibility {
+
+// --- Cover memory ---
+
+// Remembers which panels hid a source plane from the receiver before, since they mostly hide it from a neighbour as
+// well. What it returns is only tried first: the panels may be those of another scene.
+
+class CoverMemory {
+ public:
+  static constexpr std::size_t kMost = 128;  // panels of a cover; more are not remembered
+
+  // Those that hid the plane with this first piece last; empty if that is not known.
+  [[nodiscard]] std::span<const PanelId> of(std::uint32_t first_piece) const {
+    const Cover& cover = covers_[first_piece % kPlanes];
+    return {cover.panels.data(), cover.first_piece == first_piece ? cover.count : 0};
+  }
+  void forget(std::uint32_t first_piece) { covers_[first_piece % kPlanes].count = 0; }
+  // Remembers the panel of each of these, or of the first kMost of them.
+  template <class Item, class PanelOf>
+  void set(std::uint32_t first_piece, std::span<const Item> items, const PanelOf& panel_of) {
+    Cover& cover = covers_[first_piece % kPlanes];
+    cover.first_piece = first_piece;
+    cover.count = 0;
+    for (const Item& item : items.first(std::min(items.size(), kMost))) cover.panels[cover.count++] = panel_of(item);
+  }
+
+ private:
+  static constexpr std::size_t kPlanes = 16;
+  struct Cover {
+    std::uint32_t first_piece = 0;
+    std::size_t count = 0;
+    std::array<PanelId, kMost> panels{};
+  };
+  std::array<Cover, kPlanes> covers_{};
+};
+
+// --- Edge workspace ---
 
 // What a search for the visible parts of one plane works on. It depends on nothing that an earlier search left here.
 struct EdgeSearch {

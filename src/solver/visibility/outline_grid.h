@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "kernel/lane_types.h"
+#include "kernel/lanes.h"
 #include "visibility/outlines.h"
 
 namespace exactff::visibility {

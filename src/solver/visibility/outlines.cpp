@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
-#include "kernel/lane_types.h"
-#include "scene/places.h"
+#include "kernel/lanes.h"
+#include "scene/scene.h"
 
 namespace exactff::visibility {
 

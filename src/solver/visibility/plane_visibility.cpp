@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "visibility/plane_frame.h"
+#include "visibility/polygon_sets.h"
 
 namespace exactff::visibility {
 

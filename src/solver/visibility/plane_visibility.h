@@ -1,5 +1,5 @@
 // What the engines are given and what they find: the visible part of one plane of the source. Two engines find it,
-// edge_walk.h and boolean_walk.h. No radiometry.
+// visible_boundary.cpp and boolean_walk.h. No radiometry.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 #include "receivers/own_pieces.h"
 #include "scene/panels.h"
 #include "scene/shaft_tree.h"
-#include "visibility/boundary_piece.h"
 #include "visibility/edge_covers.h"
+#include "visibility/outlines.h"
 #include "visibility/source_plane.h"
 
 namespace exactff::visibility {

@@ -17,12 +17,12 @@
 //   b. a grid over the source (outline_grid.h) finds the outlines that an edge may meet;
 //   c. edges are processed in runs of up to four corners, outline by outline; where there are many outlines, neighbours
 //      follow one another. The heights of a run's corners above the lines of an outline give, for each edge of the run,
-//      the interval that the outline covers: by the filter for all edges of the run at once (edge_lanes.h), and
+//      the interval that the outline covers: by the filter for all edges of the run at once (edge_covers.h), and
 //      exactly where the filter is not certain;
 //   d. for each edge, one sweep over its intervals gives its visible parts.
 //
 // Few occluders may prove that nothing is visible: if no part of any edge of the source or of these occluders bounds
-// what they leave visible, they leave nothing, and so do all. find_cover chooses them by estimates (cover_choice.h),
+// what they leave visible, they leave nothing, and so do all. find_cover chooses them by estimates,
 // and traces only their edges and the source's, against them alone. Where it finds a visible part, it adds an occluder
 // that seems to hide it, and traces the edge again. What was hidden before stays hidden.
 #pragma once
@@ -32,15 +32,64 @@
 #include <bit>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "visibility/cover_choice.h"
 #include "visibility/edge_covers.h"
-#include "visibility/edge_lanes.h"
 #include "visibility/outline_grid.h"
 #include "visibility/outlines.h"
 
 namespace exactff::visibility {
+
+// --- Cover choice ---
+
+// Chooses a few occluders that may together hide all of the source. By estimates in doubles, which prove nothing:
+// that what is chosen hides all, VisibleEdges proves.
+//
+// An occluder seems to hide a direction if the direction lies on the inner side of all its edges. The size of a shadow
+// is its area in a plane across the view.
+
+// A workspace: its memory is reused from one call to the next.
+class CoverChoice {
+ public:
+  // How many occluders may be chosen, of that many: so few that a search in vain takes little of the time that a search
+  // for all visible edges takes, which is nearly proportional to `occluders`.
+  [[nodiscard]] static std::size_t most_of(std::size_t occluders);
+
+  // Chooses, for some points of the source, the largest of the occluders that seem to hide each. False if none does, or
+  // if most_of() occluders are not enough for the area of the source. The first `source_count` outlines are the
+  // source's.
+  [[nodiscard]] bool start(const Outlines& outlines, std::size_t source_count);
+  // Chooses the largest occluder that seems to hide the direction. False if none does, if the direction seems hidden by
+  // those already chosen, or if they are too many.
+  [[nodiscard]] bool add_for(const Outlines& outlines, const kernel::Approx3& direction);
+
+  // Chooses all occluders; no more can be added.
+  void take_all(const Outlines& outlines, std::size_t source_count);
+
+  // Those chosen, in order. Valid until the next call.
+  [[nodiscard]] std::span<const OutlineId> chosen() const { return chosen_; }
+
+ private:
+  using Shadow = std::pair<float, OutlineId>;  // its size, as a share of the source's, at most 1
+
+  void find_points(const Outlines& outlines, std::size_t source_count);
+  [[nodiscard]] bool corners_seem_hidden(const Outlines& outlines, std::size_t source_count);
+  [[nodiscard]] bool find_largest(const Outlines& outlines, std::size_t source_count);
+  void find_depths(const Outlines& outlines);
+  [[nodiscard]] double size(const Outlines& outlines, OutlineId id) const;
+  [[nodiscard]] static bool seems_hidden(const Outlines& outlines, OutlineId by, const kernel::Approx3& direction);
+
+  kernel::Approx3 across_view_;
+  std::vector<kernel::Approx3> corners_, points_;  // of the source: near its corners, and elsewhere
+  std::vector<OutlineId> across_;                  // occluders that reach beyond the source's edges
+  std::vector<double> inverse_depths_;             // by corner, along the view; infinite where it is not ahead
+  std::vector<Shadow> largest_;                    // in descending order
+  std::vector<OutlineId> chosen_;
+  std::size_t most_ = 0;
+};
+
+// --- Visible edges ---
 
 // Finds edges between the same two corners: a hash table with open addressing.
 class EdgeTable {
@@ -89,7 +138,7 @@ class VisibleEdges : public EdgeCovers {
  private:
   static constexpr std::size_t kBatch = 4;
 
-  // Edges of an outline (edge_lanes.h).
+  // Edges of an outline (edge_covers.h).
   struct Run {
     OutlineId outline = 0;
     bool of_source = false;

@@ -11,41 +11,167 @@
 #include <array>
 #include <cmath>
 #include <compare>
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "exact/lift.h"
 #include "exact/source_planes.h"
 #include "exactff/view.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
 #include "text/escape.h"
 #include "text/phrases.h"
-#include "whole_view/labels.h"
 #include "whole_view/patch_colours.h"
 #include "whole_view/regions.h"
 
 namespace exactff {
-
 namespace {
 
 using kernel::cross;
 using kernel::dot;
 using kernel::scaled;
 using kernel::sum;
-using whole_view::Labels;
 using whole_view::OutlineId;
-using whole_view::Pixel;
-using whole_view::PixelLoop;
 using whole_view::Regions;
 using whole_view::Side;
 using whole_view::SideLoop;
 using whole_view::ViewEdges;
+
+// --- Labels ---
+
+// Where the names of things fit into a picture. The picture is a grid of squares, each of which belongs to the thing
+// at its middle. A name is a box of squares.
+
+struct Pixel {
+  double x = 0.0, y = 0.0;
+};
+using PixelLoop = std::vector<Pixel>;  // the last one is joined to the first one
+
+class Labels {
+ public:
+  static constexpr double kFontSize = 12.0, kHeight = 20.0;  // in pixels; the height is that of a line with margins
+
+  Labels(double width, double height);
+
+  // What lies within the loops, by the even-odd rule, belongs to `thing`, and no longer to a thing added before.
+  void add(std::uint32_t thing, std::span<const PixelLoop> loops);
+  // The middle of a box for the text that lies in the thing: of all such boxes, the one next to their mean. None if the
+  // text fits nowhere. After the last `add`.
+  [[nodiscard]] std::optional<Pixel> place(std::uint32_t thing, const std::string& text);
+
+ private:
+  struct SquareBounds {  // of squares; the last ones do not belong to it
+    int left = 0, top = 0, right = 0, bottom = 0;
+  };
+
+  [[nodiscard]] std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+  }
+  [[nodiscard]] bool fits(std::uint32_t thing, int column, int row, int width, int height) const;
+  void count_runs();
+
+  int columns_, rows_;
+  std::vector<std::uint64_t> thing_;  // of each square: 1 + the thing, or 0
+  std::vector<int> run_;              // the number of squares of its thing from each square to the right
+  std::map<std::uint32_t, SquareBounds> bounds_;
+};
+
+constexpr double kSquare = 4.0;
+constexpr double kMargin = 3.0;  // beside the text
+
+int squares(double length) { return static_cast<int>(std::ceil(length / kSquare)); }
+
+// Estimated from above for usual fonts. The letters of other alphabets may be wider, up to squares.
+double width_of(const std::string& text) {
+  constexpr double kNarrow = 7.0;
+  double width = 2 * kMargin;
+  for (const char byte : text) {
+    const auto code = static_cast<unsigned char>(byte);
+    const bool continues = (code & 0xC0U) == 0x80U;  // a letter that has begun
+    if (!continues) width += code < 0x80U ? kNarrow : Labels::kFontSize;
+  }
+  return width;
+}
+
+Labels::Labels(double width, double height)
+    : columns_(squares(width)),
+      rows_(squares(height)),
+      thing_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0) {}
+
+void Labels::add(std::uint32_t thing, std::span<const PixelLoop> loops) {
+  std::map<int, std::vector<double>> crossings;  // of the middle line of a row
+  for (const PixelLoop& loop : loops) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Pixel &p = loop[i], &q = loop[(i + 1) % loop.size()];
+      const auto [low, high] = std::minmax(p.y, q.y);
+      const int first = std::max(0, static_cast<int>(std::ceil(low / kSquare - 0.5)));
+      for (int row = first; row < rows_ && (row + 0.5) * kSquare < high; ++row) {
+        crossings[row].push_back(p.x + ((row + 0.5) * kSquare - p.y) / (q.y - p.y) * (q.x - p.x));
+      }
+    }
+  }
+  if (crossings.empty()) return;
+  SquareBounds bounds{columns_, crossings.begin()->first, 0, crossings.rbegin()->first + 1};
+  for (auto& [row, places] : crossings) {
+    std::ranges::sort(places);
+    for (std::size_t i = 0; i + 1 < places.size(); i += 2) {
+      const int left = std::max(0, static_cast<int>(std::ceil(places[i] / kSquare - 0.5)));
+      const int right = std::min(columns_, static_cast<int>(std::ceil(places[i + 1] / kSquare - 0.5)));
+      for (int column = left; column < right; ++column) thing_[index(column, row)] = std::uint64_t{1} + thing;
+      if (left < right)
+        bounds = {std::min(bounds.left, left), bounds.top, std::max(bounds.right, right), bounds.bottom};
+    }
+  }
+  bounds_[thing] = bounds;
+}
+
+void Labels::count_runs() {
+  run_.assign(thing_.size(), 1);
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = columns_ - 2; column >= 0; --column) {
+      const std::size_t here = index(column, row);
+      if (thing_[here] == thing_[here + 1]) run_[here] = run_[here + 1] + 1;
+    }
+  }
+}
+
+bool Labels::fits(std::uint32_t thing, int column, int row, int width, int height) const {
+  for (int r = row; r < row + height; ++r) {
+    const std::size_t here = index(column, r);
+    if (thing_[here] != std::uint64_t{1} + thing || run_[here] < width) return false;
+  }
+  return true;
+}
+
+std::optional<Pixel> Labels::place(std::uint32_t thing, const std::string& text) {
+  if (run_.empty()) count_runs();
+  const auto found = bounds_.find(thing);
+  if (found == bounds_.end()) return {};
+  const SquareBounds& bounds = found->second;
+  const int width = squares(width_of(text)), height = squares(kHeight);
+  std::vector<Pixel> middles;
+  Pixel mean;
+  for (int row = bounds.top; row + height <= bounds.bottom; ++row) {
+    for (int column = bounds.left; column + width <= bounds.right; ++column) {
+      if (!fits(thing, column, row, width, height)) continue;
+      middles.push_back({(column + 0.5 * width) * kSquare, (row + 0.5 * height) * kSquare});
+      mean = {mean.x + middles.back().x, mean.y + middles.back().y};
+    }
+  }
+  if (middles.empty()) return {};
+  const auto count = static_cast<double>(middles.size());
+  return *std::ranges::min_element(middles, {}, [&](const Pixel& middle) {
+    return std::hypot(middle.x - mean.x / count, middle.y - mean.y / count);
+  });
+}
+
+// --- The picture ---
 
 constexpr double kRadius = 320.0, kCentreX = 344.0, kCentreY = 392.0, kWidth = 688.0, kHeight = 760.0;
 constexpr double kFlat = 1e-5;

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "exact/lift.h"
+#include "exact/source_planes.h"
 #include "kernel/poll.h"
 #include "kernel/vec.h"
 

@@ -19,7 +19,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "kernel/direction.h"
+#include "kernel/filter.h"
 #include "whole_view/view_edges.h"
 
 namespace exactff::whole_view {

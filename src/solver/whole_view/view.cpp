@@ -9,17 +9,15 @@
 #include <compare>
 
 #include "contour/contour.h"
-#include "exact/certified.h"
 #include "exact/quick_tier.h"
 #include "exact/source_planes.h"
 #include "exact/workspace.h"
 #include "kernel/ball.h"
 #include "kernel/float_environment.h"
-#include "scene/misuse.h"
+#include "scene/scene.h"
 #include "whole_view/view_edges.h"
 
 namespace exactff {
-
 namespace {
 
 using exact::QuickTier;
@@ -295,6 +293,36 @@ void view(const Scene& scene, const Receiver& receiver, const ViewOptions& optio
   const kernel::StandardArithmetic arithmetic;
   exact::check_view_arguments(scene, receiver, options.precision_cap);
   ViewSolver(scene, receiver, options, result, workspace).run();
+}
+
+// --- Quantity ---
+
+std::string_view to_string(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::kRadiance:
+      return "radiance";
+    case Quantity::kRadiosity:
+      return "radiosity";
+    case Quantity::kIrradiance:
+      return "irradiance";
+    case Quantity::kFormFactor:
+      return "form-factor";
+  }
+  return {};
+}
+
+std::optional<Quantity> quantity_named(std::string_view name) {
+  for (const Quantity quantity :
+       {Quantity::kRadiance, Quantity::kRadiosity, Quantity::kIrradiance, Quantity::kFormFactor}) {
+    if (to_string(quantity) == name) return quantity;
+  }
+  return std::nullopt;
+}
+
+std::string unit_of(Quantity quantity, KeMeans ke) {
+  if (quantity == Quantity::kFormFactor) return "a pure number";
+  const bool radiance = quantity == Quantity::kRadiance, ke_is_radiance = ke == KeMeans::kRadiance;
+  return radiance == ke_is_radiance ? "the unit of Ke" : radiance ? "the unit of Ke / pi" : "the unit of Ke * pi";
 }
 
 }  // namespace exactff

@@ -165,10 +165,11 @@ void ViewEdges::trace_piercing(const Piercing& piercing) {
   near_.clear();
   seen_in_[p] = seen_in_[q] = run_;
   for (const Windows::WindowPlace& place : windows_.windows_of(p)) {
-    const auto seats = windows_.seats(place.at);
-    if (std::ranges::none_of(seats, [&, other = q](const Windows::Seat& seat) { return seat.outline == other; }))
+    const auto seen_here = windows_.seen_in(place.at);
+    if (std::ranges::none_of(seen_here,
+                             [&, other = q](const Windows::SeenOutline& seen) { return seen.outline == other; }))
       continue;
-    for (const Windows::Seat& seat : seats) add_near(seat.outline);
+    for (const Windows::SeenOutline& seen : seen_here) add_near(seen.outline);
   }
   for (const OutlineId of : {p, q}) {
     for (const Windows::WindowPlace& place : windows_.hidden_by(of)) add_near(place.at);

@@ -11,7 +11,7 @@
 // the lower outline is kept. Where two faces pierce each other, the part of their planes' common line that lies in both
 // is an edge as well, with the nearer face of each side beside it. Nothing else separates what is seen.
 //
-// Depths along an edge are linear (depths.h), so two signs say whether an outline is nearer than another one along all
+// Depths along an edge are linear (windows.h), so two signs say whether an outline is nearer than another one along all
 // of an edge, or from where on. Where both signs are 0, the two planes and the edge have a line in common, and the sign
 // beside the edge decides, separately for the left and the right.
 //
@@ -29,22 +29,72 @@
 // it is looked at like any other.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "kernel/expect.h"
 #include "scene/contacts.h"
 #include "visibility/edge_covers.h"
-#include "visibility/edge_lanes.h"
 #include "visibility/plane_visibility.h"
 #include "visibility/visible_edges.h"
-#include "whole_view/depths.h"
-#include "whole_view/pair_table.h"
 #include "whole_view/windows.h"
 
 namespace exactff::whole_view {
+
+// --- Pair table ---
+
+// Numbers for unordered pairs of numbers: a hash table with open addressing.
+
+class PairTable {
+ public:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+  // Forgets all pairs, in the existing memory.
+  void clear() {
+    count_ = 0;
+    slots_.assign(std::max<std::size_t>(slots_.size(), 64), Slot{});
+  }
+
+  // The number of the pair; kNone if it is new. The reference is valid until the next call. Requires p != q.
+  std::uint32_t& operator()(std::uint32_t p, std::uint32_t q) {
+    EXACTFF_EXPECT(p != q);
+    if (2 * ++count_ > slots_.size()) grow();  // counts requests, so grows a little early
+    return find(std::min(p, q), std::max(p, q)).number;
+  }
+
+ private:
+  struct Slot {
+    std::uint32_t low = 0, high = 0;  // equal: free
+    std::uint32_t number = kNone;
+  };
+  Slot& find(std::uint32_t low, std::uint32_t high) {
+    const std::uint64_t key = (std::uint64_t{high} << 32U | low) * 0x9E3779B97F4A7C15U;
+    for (std::size_t at = key >> 32U & (slots_.size() - 1);; at = (at + 1) & (slots_.size() - 1)) {
+      Slot& slot = slots_[at];
+      if (slot.low == slot.high) slot = {low, high, kNone};
+      if (slot.low == low && slot.high == high) return slot;
+    }
+  }
+  void grow() {
+    old_.swap(slots_);
+    slots_.assign(2 * old_.size(), Slot{});
+    count_ = 1;
+    for (const Slot& slot : old_) {
+      if (slot.low == slot.high) continue;
+      ++count_;
+      find(slot.low, slot.high) = slot;
+    }
+  }
+
+  std::vector<Slot> slots_, old_;
+  std::size_t count_ = 0;
+};
+
+// --- View edges ---
 
 using visibility::Four;
 using visibility::FourMask;
@@ -101,7 +151,7 @@ class ViewEdges : public visibility::EdgeCovers {
     bool coincides = false;  // it begins at the edge
     Interval interval;
   };
-  // Edges of one outline (edge_lanes.h), or one line of two piercing faces.
+  // Edges of one outline (edge_covers.h), or one line of two piercing faces.
   struct Run {
     OutlineId owner = kNothing;  // seen on the left
     OutlineId other = kNothing;  // of piercing faces: the one on the right

@@ -1,6 +1,4 @@
 // Intervals for readers.
-#include "text/interval.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -9,8 +9,6 @@
 #include "exactff/enclosure.h"
 #include "generate/random.h"
 #include "kernel/ball.h"
-#include "kernel/direction.h"
-#include "kernel/exact_vec.h"
 #include "kernel/filter.h"
 #include "kernel/numbers.h"
 

@@ -1,11 +1,10 @@
 // Planes that are prepared for the sides of many points: the exact signs, and boxes on the safe side.
-#include "kernel/plane_through.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "generate/random.h"
+#include "kernel/filter.h"
 #include "support/random_scenes.h"
 
 namespace exactff::validation {

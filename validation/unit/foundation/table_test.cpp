@@ -15,7 +15,7 @@
 #include "support/random_scenes.h"
 #include "table/csv.h"
 #include "table/fields.h"
-#include "text/text_file.h"
+#include "text/text_lines.h"
 
 namespace exactff::table {
 namespace {

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "support/program.h"
-#include "text/characters.h"
 #include "text/csv_lines.h"
 #include "text/encoding.h"
 #include "text/escape.h"

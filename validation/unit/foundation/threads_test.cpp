@@ -12,7 +12,7 @@
 #include "exactff/exact.h"
 #include "generate/families.h"
 #include "scene/closed_surfaces.h"
-#include "scene/places.h"
+#include "scene/scene.h"
 #include "unit/rivals/methods_support.h"
 
 namespace exactff {

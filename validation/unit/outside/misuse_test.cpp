@@ -8,20 +8,20 @@
 #include <string>
 #include <utility>
 
-#include "adaptive/value_range.h"
+#include "adaptive/sampled_scene.h"
 #include "exactff/adaptive.h"
 #include "exactff/exact.h"
 #include "exactff/methods.h"
 #include "exactff/study.h"
 #include "exactff/truth.h"
-#include "formats/converted_names.h"
-#include "formats/stl_layout.h"
+#include "formats/mtl_reader.h"
+#include "formats/stl.h"
 #include "kernel/statistics.h"
 #include "scene/triangulation.h"
 #include "study/settings.h"
 #include "truth/unit_normal.h"
 #include "unit/reports/study_support.h"
-#include "whole_view/pair_table.h"
+#include "whole_view/view_edges.h"
 
 namespace exactff {
 namespace {
@@ -227,11 +227,11 @@ TEST(Misuse, BrokenRequirementsNameTheirPlace) {
     EXPECT_NE(words.find(file + ":"), std::string::npos) << words;
   };
   expect_broken("statistics.cpp", [] { (void)kernel::percentile({}, 50.0); });
-  expect_broken("converted_names.cpp", [] { (void)ConvertedNames().warning("a.obj"); });
-  expect_broken("stl_layout.h", [] { (void)formats::StlLayout::triangle_count("solid"); });
+  expect_broken("mtl_reader.cpp", [] { (void)ConvertedNames().warning("a.obj"); });
+  expect_broken("stl.h", [] { (void)formats::StlLayout::triangle_count("solid"); });
   expect_broken("triangulation.cpp", [] { (void)cut_face({}, {{0, 1, 2}}); });
-  expect_broken("pair_table.h", [] { (void)whole_view::PairTable()(1, 1); });
-  expect_broken("value_range.h", [] { (void)adaptive::move_into_range(std::nan(""), adaptive::Formula::kAny); });
+  expect_broken("view_edges.h", [] { (void)whole_view::PairTable()(1, 1); });
+  expect_broken("sampled_scene.h", [] { (void)adaptive::move_into_range(std::nan(""), adaptive::Formula::kAny); });
   expect_broken("unit_normal.cpp", [] { (void)truth::unit_normal({}); });
   expect_broken("settings.cpp", [] { (void)study::combine({}); });
 }

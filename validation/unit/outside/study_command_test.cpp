@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "flags/study_file.h"
-#include "page/plot_script.h"
+#include "page/gnuplot.h"
 #include "report/plan.h"
 #include "support/program.h"
 

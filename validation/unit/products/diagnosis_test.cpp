@@ -11,7 +11,7 @@
 #include "exactff/scene_files.h"
 #include "exactff/slips.h"
 #include "generate/plain_scene.h"
-#include "models/room_parts.h"
+#include "models/rooms.h"
 
 namespace exactff::slips {
 namespace {

@@ -17,8 +17,8 @@
 #include "matrix/surroundings.h"
 #include "support/program.h"
 #include "view_factors/exact_scene.h"
+#include "view_factors/factor_bounds.h"
 #include "view_factors/pairs.h"
-#include "view_factors/patch_bounds.h"
 #include "view_factors/prepared_patch.h"
 #include "view_factors/seen_parts.h"
 

@@ -13,7 +13,7 @@
 #include "exactff/scene_files.h"
 #include "exactff/view.h"
 #include "generate/plain_scene.h"
-#include "models/room_parts.h"
+#include "models/rooms.h"
 #include "support/complaint.h"
 #include "support/program.h"
 

@@ -10,7 +10,7 @@
 
 #include "exactff/scene_files.h"
 #include "kernel/statistics.h"
-#include "page/plot_script.h"
+#include "page/gnuplot.h"
 
 namespace exactff::experiments {
 namespace {

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "methods/hemicube_pixels.h"
+#include "methods/hemicube.h"
 #include "unit/rivals/methods_support.h"
 
 namespace exactff::validation {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "methods/unit_points.h"
+#include "methods/area_sampling.h"
 #include "unit/rivals/methods_support.h"
 #include "unit/rivals/moments.h"
 

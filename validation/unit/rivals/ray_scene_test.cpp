@@ -1,11 +1,9 @@
-#include "adaptive/ray_scene.h"
-
 #include <gtest/gtest.h>
 
 #include <cfenv>
 #include <cmath>
 
-#include "adaptive/receiver_view.h"
+#include "adaptive/sampled_scene.h"
 #include "exactff/adaptive.h"
 #include "generate/families.h"
 #include "unit/rivals/sampled_scenes.h"

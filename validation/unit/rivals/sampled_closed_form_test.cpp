@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "adaptive/closed_form.h"
+#include "adaptive/sub_patch.h"
 
 namespace exactff::adaptive {
 namespace {

@@ -6,10 +6,10 @@
 #include <array>
 #include <numeric>
 
-#include "adaptive/receiver_view.h"
+#include "adaptive/sampled_scene.h"
 #include "adaptive/shaft.h"
 #include "generate/families.h"
-#include "kernel/exact_vec.h"
+#include "kernel/numbers.h"
 #include "support/random_scenes.h"
 #include "unit/rivals/sampled_rays.h"
 #include "unit/rivals/sampled_scenes.h"

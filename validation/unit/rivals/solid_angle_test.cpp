@@ -1,12 +1,11 @@
 // Area sampling uniform in solid angle: right on average, with the slope of theory, in scenes that formulas for
 // spherical polygons do not survive.
-#include "methods/solid_angle.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "methods/area_sampling.h"
 #include "unit/rivals/methods_support.h"
 #include "unit/rivals/moments.h"
 

@@ -12,7 +12,7 @@
 #include "exactff/exact.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
-#include "kernel/plane_through.h"
+#include "kernel/filter.h"
 #include "support/solve.h"
 
 namespace exactff {

@@ -10,8 +10,7 @@
 
 #include "generate/plain_scene.h"
 #include "generate/random.h"
-#include "kernel/exact_vec.h"
-#include "scene/connectedness.h"
+#include "kernel/numbers.h"
 
 namespace exactff {
 namespace {

@@ -9,7 +9,7 @@
 #include "exactff/receiver.h"
 #include "exactff/scene_files.h"
 #include "support/program.h"
-#include "text/nearest_names.h"
+#include "text/names.h"
 
 namespace exactff {
 namespace {

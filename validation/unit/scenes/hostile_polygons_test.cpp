@@ -9,8 +9,7 @@
 #include <numeric>
 #include <random>
 
-#include "scene/ear_clipping.h"
-#include "scene/edge_crossing.h"
+#include "scene/planar_region.h"
 #include "scene/triangulation.h"
 #include "unit/outside/sanitized.h"
 

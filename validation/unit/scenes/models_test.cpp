@@ -12,7 +12,7 @@
 #include "exactff/scene_files.h"
 #include "exactff/view.h"
 #include "generate/families.h"
-#include "models/model_files.h"
+#include "models/registry.h"
 #include "support/complaint.h"
 #include "support/holds.h"
 #include "support/program.h"

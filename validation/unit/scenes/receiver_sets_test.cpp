@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "exactff/receiver.h"
-#include "kernel/exact_vec.h"
+#include "kernel/numbers.h"
 #include "unit/scenes/polygon_faces.h"
 
 namespace exactff {

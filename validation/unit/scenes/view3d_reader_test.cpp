@@ -4,7 +4,7 @@
 
 #include "exactff/exact.h"
 #include "exactff/scene_files.h"
-#include "formats/decimal_complement.h"
+#include "formats/view3d.h"
 #include "unit/scenes/format_support.h"
 
 namespace exactff {

@@ -1,13 +1,13 @@
-// Two numbers of a stratum, the guesses of which are constants.
+// Two numbers of a stratum, the control variates of which are constants.
 #pragma once
 
-#include "view_factors/stratified_mean.h"
+#include "view_factors/strata.h"
 
 namespace exactff::view_factors {
 
-// The first one's guess is given, the second one's is the first number. `share`: of the area, of the stratum.
-inline void add_numbers(StratifiedMean& mean, double a, double b, double guess, double share) {
-  mean.add(a, guess, guess, 0.5 * share);
+// The first one's control variate is given, the second one's is the first number. `share`: of the area, of the stratum.
+inline void add_numbers(StratifiedMean& mean, double a, double b, double control, double share) {
+  mean.add(a, control, control, 0.5 * share);
   mean.add(b, a, a, 0.5 * share);
 }
 

@@ -16,7 +16,6 @@
 #include "support/program.h"
 #include "unit/solver/visit_cells.h"
 #include "view_factors/certified_integral.h"
-#include "view_factors/disc_formula.h"
 
 namespace exactff {
 namespace {

@@ -1,6 +1,4 @@
-// The filter of crossing orders (view_factors/crossing_order.h), where three lines almost meet as seen from the cell.
-#include "view_factors/crossing_order.h"
-
+// The filter of crossing orders (view_factors/cell.h), where three lines almost meet as seen from the cell.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "generate/random.h"
+#include "view_factors/cell.h"
 
 namespace exactff::view_factors {
 namespace {

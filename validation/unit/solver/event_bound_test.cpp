@@ -1,7 +1,5 @@
-// The roundings of the bound on event cells (view_factors/event_bound.h), against the same quantities in rational
+// The roundings of the bound on event cells (view_factors/cell.h), against the same quantities in rational
 // numbers and balls.
-#include "view_factors/event_bound.h"
-
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
@@ -13,6 +11,7 @@
 
 #include "generate/random.h"
 #include "kernel/ball.h"
+#include "view_factors/cell.h"
 
 namespace exactff::view_factors {
 namespace {

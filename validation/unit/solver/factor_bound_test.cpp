@@ -1,6 +1,4 @@
 // What is known of a pair before any cell: a bound of its form factors, and the shaft between its boxes.
-#include "view_factors/factor_bound.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,9 +11,10 @@
 #include "kernel/vec.h"
 #include "support/random_scenes.h"
 #include "unit/solver/factor_at.h"
-#include "view_factors/pair_shaft.h"
-#include "view_factors/patch_parts.h"
+#include "view_factors/factor_bounds.h"
+#include "view_factors/prepared_patch.h"
 #include "view_factors/seen_parts.h"
+#include "view_factors/sight.h"
 
 namespace exactff::view_factors {
 namespace {

@@ -1,6 +1,4 @@
-// Guesses from nearby values of a function.
-#include "view_factors/local_planes.h"
-
+// Control variates from nearby values of a function.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +10,8 @@
 #include "generate/random.h"
 #include "kernel/vec.h"
 #include "view_factors/exact_scene.h"
-#include "view_factors/patch_parts.h"
+#include "view_factors/interim_analyses.h"
+#include "view_factors/prepared_patch.h"
 
 namespace exactff::view_factors {
 namespace {

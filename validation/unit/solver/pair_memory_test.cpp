@@ -1,6 +1,4 @@
 // What a pair of patches remembers of its cells, and the filter before exact planes.
-#include "view_factors/pair_memory.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>

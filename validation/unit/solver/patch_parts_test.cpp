@@ -1,6 +1,4 @@
 // A patch of triangles in one plane has the parts, and the factors, of the polygon that they make.
-#include "view_factors/patch_parts.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
@@ -8,6 +6,7 @@
 
 #include "exactff/view_factors.h"
 #include "generate/plain_scene.h"
+#include "view_factors/prepared_patch.h"
 
 namespace exactff::view_factors {
 namespace {

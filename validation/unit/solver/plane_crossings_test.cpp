@@ -1,13 +1,12 @@
 // Crossings with the source's plane: the double-double result is always right, and it declines if it cannot decide.
 // EXACTFF_TEST_SCALE multiplies the number of segments.
-#include "visibility/plane_crossings.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "generate/random.h"
 #include "support/random_scenes.h"
+#include "visibility/source_plane.h"
 
 namespace exactff::visibility {
 namespace {

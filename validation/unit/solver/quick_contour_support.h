@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "contour/contour.h"
-#include "contour/quick_angle.h"
+#include "contour/quick_arithmetic.h"
 #include "contour/quick_contour.h"
 #include "exactff/enclosure.h"
 #include "generate/random.h"

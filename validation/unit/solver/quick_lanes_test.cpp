@@ -10,9 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "contour/quick_angle.h"
+#include "contour/quick_arithmetic.h"
 #include "contour/quick_contour.h"
-#include "contour/quick_vector.h"
 #include "generate/random.h"
 #include "support/random_scenes.h"
 #include "unit/solver/quick_contour_support.h"

@@ -1,6 +1,4 @@
 // How fast point factors change, judged by the exact solver.
-#include "view_factors/slope_bound.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +16,8 @@
 #include "support/random_scenes.h"
 #include "unit/solver/factor_at.h"
 #include "view_factors/exact_scene.h"
-#include "view_factors/patch_parts.h"
+#include "view_factors/factor_bounds.h"
+#include "view_factors/prepared_patch.h"
 #include "view_factors/seen_parts.h"
 
 namespace exactff::view_factors {

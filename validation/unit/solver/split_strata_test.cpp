@@ -1,6 +1,4 @@
 // Strata that are split where a function may be large.
-#include "view_factors/split_strata.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,8 +10,8 @@
 #include "kernel/vec.h"
 #include "unit/solver/add_numbers.h"
 #include "view_factors/exact_scene.h"
-#include "view_factors/patch_parts.h"
-#include "view_factors/stratified_mean.h"
+#include "view_factors/prepared_patch.h"
+#include "view_factors/strata.h"
 
 namespace exactff::view_factors {
 namespace {
@@ -82,14 +80,14 @@ TEST_P(SplitStrataOf, AreSmallWhereTheFunctionMayBeLarge) {
   EXPECT_LE(worst, 4.0 * sum / static_cast<double>(split.strata().strata.size()));
 }
 
-// The mean over many looks at split strata is that over very many equal ones.
+// The mean over many analyses at split strata is that over very many equal ones.
 TEST_P(SplitStrataOf, LeaveTheMeanAsItIs) {
-  const auto mean = [&](const Strata& strata, std::size_t look) {
+  const auto mean = [&](const Strata& strata, std::size_t analysis) {
     StratifiedMean result;
     for (std::size_t s = 0; s < strata.strata.size(); ++s) {
       double values[kDraws];
       for (std::size_t d = 0; d < kDraws; ++d) {
-        Draws draws(look, s, d);
+        Draws draws(analysis, s, d);
         const Tile& tile = draw_tile(strata, strata.strata[s], d, draws);
         values[d] = f(point_at(parts_[tile.part], tile, draw_place(tile, draws), exact_.units).at);
       }
@@ -101,14 +99,14 @@ TEST_P(SplitStrataOf, LeaveTheMeanAsItIs) {
   SplitStrata split(parts_, 36, span_);
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(split.split_largest_term());
   double sum = 0.0, square = 0.0;
-  constexpr std::size_t kLooks = 100;
-  for (std::size_t look = 1; look <= kLooks; ++look) {
-    const StratifiedMean found = mean(split.strata(), look);
+  constexpr std::size_t kAnalyses = 100;
+  for (std::size_t analysis = 1; analysis <= kAnalyses; ++analysis) {
+    const StratifiedMean found = mean(split.strata(), analysis);
     sum += found.value;
     square += found.square;
   }
-  const double error = std::sqrt(square) / kLooks;
-  EXPECT_NEAR(sum / kLooks, truth, 5.0 * error + 1e-5);
+  const double error = std::sqrt(square) / kAnalyses;
+  EXPECT_NEAR(sum / kAnalyses, truth, 5.0 * error + 1e-5);
   EXPECT_LT(error, 1e-3 * truth);
 }
 
@@ -126,8 +124,8 @@ TEST_P(SplitStrataOf, LeaveLessToChanceWhereTheFunctionHardlyChanges) {
   EXPECT_DOUBLE_EQ(split.largest_term(), largest);
 }
 
-// Those of the largest squares first. What is left of them is counted, and a look sets them anew.
-TEST_P(SplitStrataOf, AreSmallWhereNumbersWereFarFromTheirGuesses) {
+// Those of the largest squares first. What is left of them is counted, and an analysis sets them anew.
+TEST_P(SplitStrataOf, AreSmallWhereNumbersWereFarFromTheirControlVariates) {
   SplitStrata split(parts_, 36, [](const Tile&, bool) { return Span{}; });
   EXPECT_FALSE(split.split_largest_square());
   const std::size_t first = split.strata().strata.size();

@@ -16,8 +16,7 @@
 #include "kernel/vec.h"
 #include "unit/solver/add_numbers.h"
 #include "view_factors/exact_scene.h"
-#include "view_factors/patch_parts.h"
-#include "view_factors/stratified_mean.h"
+#include "view_factors/prepared_patch.h"
 
 namespace exactff::view_factors {
 namespace {
@@ -52,9 +51,9 @@ struct Sample {
 };
 
 // The point of one of the two draws of a stratum.
-Sample sample(const std::vector<Part>& parts, const Strata& strata, std::size_t look, std::size_t stratum,
+Sample sample(const std::vector<Part>& parts, const Strata& strata, std::size_t analysis, std::size_t stratum,
               std::size_t draw, const Units& units) {
-  Draws draws(look, stratum, draw);
+  Draws draws(analysis, stratum, draw);
   const Tile& tile = draw_tile(strata, strata.strata[stratum], draw, draws);
   return {tile.part, point_at(parts[tile.part], tile, draw_place(tile, draws), units)};
 }
@@ -81,11 +80,11 @@ class StrataOf : public testing::TestWithParam<Patch> {
 
   // The mean over the patch; its square is the sum of those of half the differences.
   template <typename Function>
-  StratifiedMean mean_of(const Strata& strata, std::size_t look, const Function& f) {
+  StratifiedMean mean_of(const Strata& strata, std::size_t analysis, const Function& f) {
     StratifiedMean mean;
     for (std::size_t s = 0; s < strata.strata.size(); ++s) {
       const auto value = [&](std::size_t draw) {
-        return f(sample(parts_, strata, look, s, draw, exact_.units).point.at);
+        return f(sample(parts_, strata, analysis, s, draw, exact_.units).point.at);
       };
       const double a = value(0);
       add_numbers(mean, a, value(1), a, strata.strata[s].area / strata.area);
@@ -137,20 +136,20 @@ TEST_P(StrataOf, PointsLieInTheirPart) {
   }
 }
 
-// The mean over many looks, within five standard errors; and what the looks say of their variance.
+// The mean over many analyses, within five standard errors; and what the analyses say of their variance.
 TEST_P(StrataOf, MeansOfSquaresAreUnbiased) {
   const auto f = [](const Vec3& p) { return p.x * p.x + p.x * p.y + 2.0 * p.z * p.z; };
   const Strata strata = strata_of(parts_, 36);
-  constexpr std::size_t kLooks = 400;
+  constexpr std::size_t kAnalyses = 400;
   double sum = 0.0, squares = 0.0, variance = 0.0;
-  for (std::size_t look = 0; look < kLooks; ++look) {
-    const StratifiedMean mean = mean_of(strata, look, f);
+  for (std::size_t analysis = 0; analysis < kAnalyses; ++analysis) {
+    const StratifiedMean mean = mean_of(strata, analysis, f);
     sum += mean.value;
     squares += mean.value * mean.value;
-    variance += mean.square / kLooks;
+    variance += mean.square / kAnalyses;
   }
-  const double average = sum / kLooks, spread = squares / kLooks - average * average;
-  EXPECT_NEAR(average, exact_mean(f), 5.0 * std::sqrt(spread / kLooks));
+  const double average = sum / kAnalyses, spread = squares / kAnalyses - average * average;
+  EXPECT_NEAR(average, exact_mean(f), 5.0 * std::sqrt(spread / kAnalyses));
   EXPECT_GT(variance, 0.7 * spread);
   EXPECT_LT(variance, 1.4 * spread);
 }
@@ -227,24 +226,24 @@ TEST(Strata, OfManyFacesShareTheirFacesWithoutBias) {
   const Strata strata = strata_of(parts, 36);
   EXPECT_GE(strata.strata.size(), 36U);
   EXPECT_LE(strata.strata.size(), 72U);
-  constexpr std::size_t kLooks = 2000;
+  constexpr std::size_t kAnalyses = 2000;
   double sum = 0.0, squares = 0.0, variance = 0.0;
-  for (std::size_t look = 0; look < kLooks; ++look) {
+  for (std::size_t analysis = 0; analysis < kAnalyses; ++analysis) {
     StratifiedMean mean;
     for (std::size_t s = 0; s < strata.strata.size(); ++s) {
       std::array<double, 2> values{};
       for (std::size_t d = 0; d < 2; ++d) {
-        Draws draws(look, s, d);
+        Draws draws(analysis, s, d);
         values[d] = draw_tile(strata, strata.strata[s], d, draws).part % 2 == 1 ? 1.0 : 0.0;
       }
       add_numbers(mean, values[0], values[1], values[0], strata.strata[s].area / strata.area);
     }
     sum += mean.value;
     squares += mean.value * mean.value;
-    variance += mean.square / kLooks;
+    variance += mean.square / kAnalyses;
   }
-  const double average = sum / kLooks, spread = squares / kLooks - average * average;
-  EXPECT_NEAR(average, odd / all, 5.0 * std::sqrt(spread / kLooks));
+  const double average = sum / kAnalyses, spread = squares / kAnalyses - average * average;
+  EXPECT_NEAR(average, odd / all, 5.0 * std::sqrt(spread / kAnalyses));
   EXPECT_GT(variance, 0.9 * spread);
 }
 
@@ -256,25 +255,25 @@ TEST(Strata, IntervalsHoldTheMeansOfStrips) {
   const Scene scene = generate::build(plain);
   const ExactScene exact(scene);
   const std::vector<Part> parts = parts_of(exact, scene.select("square"));
-  constexpr std::size_t kLooks = 100;
+  constexpr std::size_t kAnalyses = 100;
   for (const std::size_t count : {36, 100}) {
     const Strata strata = strata_of(parts, count);
     const double r = 0.5 * std::ranges::max(strata.strata, {}, &Stratum::area).area / strata.area;
     for (const double width : {1e-4, 1e-3, 0.01, 0.03, 0.1, 0.5}) {
       double largest = 0.0;
-      for (std::size_t look = 0; look < kLooks; ++look) {
-        const double from = 0.9 * (1.0 - width) * static_cast<double>(look) / kLooks;
+      for (std::size_t analysis = 0; analysis < kAnalyses; ++analysis) {
+        const double from = 0.9 * (1.0 - width) * static_cast<double>(analysis) / kAnalyses;
         StratifiedMean mean{.expected = 4.0 * r * r};
         for (std::size_t s = 0; s < strata.strata.size(); ++s) {
           const auto value = [&](std::size_t draw) {
-            const Point p = sample(parts, strata, look, s, draw, exact.units).point;
+            const Point p = sample(parts, strata, analysis, s, draw, exact.units).point;
             const double x = std::ldexp(p.at.x, static_cast<int>(exact.units.exponent + exact.units.shift));
             return x >= from && x < from + width ? 1.0 : 0.0;
           };
           add_numbers(mean, value(0), value(1), 0.0, strata.strata[s].area / strata.area);
         }
         const double error = mean.error(r, 1e-6), off = std::abs(mean.value - width);
-        EXPECT_LE(off, error) << count << ' ' << width << ' ' << look;
+        EXPECT_LE(off, error) << count << ' ' << width << ' ' << analysis;
         largest = std::max(largest, off / error);
       }
       EXPECT_LT(largest, 1.0);

@@ -1,6 +1,4 @@
 // Intervals of means over strata, judged by numbers whose means are known.
-#include "view_factors/stratified_mean.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "unit/solver/add_numbers.h"
+#include "view_factors/strata.h"
 
 namespace exactff::view_factors {
 namespace {
@@ -23,14 +22,14 @@ struct Spots {
     for (std::size_t s = 0; s < shares.size(); ++s) sum += weight() * shares[s] * high[s];
     return sum;
   }
-  // Each range is 1. `guess`: of every stratum.
-  StratifiedMean look(std::mt19937_64& random, double guess, double expected) const {
+  // Each range is 1. `control`: of every stratum.
+  StratifiedMean analyse(std::mt19937_64& random, double control, double expected) const {
     StratifiedMean result{.expected = expected};
     std::uniform_real_distribution<double> uniform;
     for (std::size_t s = 0; s < shares.size(); ++s) {
       const auto draw = [&] { return uniform(random) < shares[s] ? high[s] : 0.0; };
       const double a = draw();
-      add_numbers(result, a, draw(), guess, weight());
+      add_numbers(result, a, draw(), control, weight());
     }
     return result;
   }
@@ -41,16 +40,16 @@ Spots spots(std::size_t count, double share, double high = 1.0) {
 }
 
 // The probability with which an interval of risk 0.2 misses the mean.
-double missed(const Spots& of, double guess, double expected) {
-  constexpr int kLooks = 1000;
+double missed(const Spots& of, double control, double expected) {
+  constexpr int kAnalyses = 1000;
   constexpr double kRisk = 0.2;
   std::mt19937_64 random(7);
   int missed = 0;
-  for (int i = 0; i < kLooks; ++i) {
-    const StratifiedMean mean = of.look(random, guess, expected);
+  for (int i = 0; i < kAnalyses; ++i) {
+    const StratifiedMean mean = of.analyse(random, control, expected);
     missed += std::abs(mean.value - of.mean()) > mean.error(0.5 * of.weight(), kRisk) ? 1 : 0;
   }
-  return static_cast<double>(missed) / kLooks;
+  return static_cast<double>(missed) / kAnalyses;
 }
 
 // None of 72 numbers meets anything.
@@ -71,7 +70,7 @@ TEST(StratifiedMean, IsKnownWhereNothingCanBeSeen) {
   EXPECT_EQ(mean.error(0.0, 1e-6), 0.0);
 }
 
-// Rare, and common; all alike, and different; whatever was guessed and expected.
+// Rare, and common; all alike, and different; whatever the control variates, and what was expected.
 TEST(StratifiedMean, IntervalsMissNoMoreThanTheirRisk) {
   std::mt19937_64 random(1);
   std::vector<Spots> all;
@@ -85,9 +84,9 @@ TEST(StratifiedMean, IntervalsMissNoMoreThanTheirRisk) {
   all.push_back(mixed);
   const double r = 0.5 / 60.0;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    for (const double guess : {0.0, 0.5, 1.0}) {
+    for (const double control : {0.0, 0.5, 1.0}) {
       for (const double expected : {0.0, 2.0 * r * r, 30.0 * r * r})
-        EXPECT_LT(missed(all[i], guess, expected), 0.2) << i;
+        EXPECT_LT(missed(all[i], control, expected), 0.2) << i;
     }
   }
 }
@@ -101,11 +100,11 @@ TEST(StratifiedMean, IntervalsAreNotMuchWiderThanTheyMustBe) {
   EXPECT_GT(largest, 0.02);
 }
 
-// With good guesses, how large the function is does not matter.
-TEST(StratifiedMean, GuessesNarrowTheInterval) {
-  const auto error = [](double guess) {
+// With good control variates, how large the function is does not matter.
+TEST(StratifiedMean, ControlVariatesNarrowTheInterval) {
+  const auto error = [](double control) {
     StratifiedMean mean;
-    for (int s = 0; s < 100; ++s) add_numbers(mean, 0.75, 0.75, guess, 0.01);
+    for (int s = 0; s < 100; ++s) add_numbers(mean, 0.75, 0.75, control, 0.01);
     return mean.error(0.005, 1e-6);
   };
   EXPECT_DOUBLE_EQ(error(0.75), StratifiedMean().error(0.005, 1e-6));
@@ -113,15 +112,15 @@ TEST(StratifiedMean, GuessesNarrowTheInterval) {
   EXPECT_GT(error(0.5), error(0.75));
 }
 
-// Of a linear function, linear guesses leave nothing to chance; those that are off leave the interval true.
-TEST(StratifiedMean, GuessesMayDependOnThePlace) {
-  constexpr int kStrata = 50, kLooks = 400;
+// Of a linear function, linear control variates leave nothing to chance; those that are off leave the interval true.
+TEST(StratifiedMean, ControlVariatesMayDependOnThePlace) {
+  constexpr int kStrata = 50, kAnalyses = 400;
   constexpr double kSlope = 0.4, kRisk = 0.2;
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> uniform;
   for (const double guessed : {kSlope, 0.0, -kSlope}) {
     int missed = 0;
-    for (int look = 0; look < kLooks; ++look) {
+    for (int analysis = 0; analysis < kAnalyses; ++analysis) {
       StratifiedMean mean{.expected = 1.0 / kStrata};
       for (int s = 0; s < kStrata; ++s) {
         const double place = uniform(random) - 0.5;
@@ -132,7 +131,7 @@ TEST(StratifiedMean, GuessesMayDependOnThePlace) {
       EXPECT_TRUE(!is_right || std::abs(mean.value - 0.5) < 1e-14);
       EXPECT_EQ(mean.square < 1e-28, is_right);
     }
-    EXPECT_LT(missed, kRisk * kLooks) << guessed;
+    EXPECT_LT(missed, kRisk * kAnalyses) << guessed;
   }
 }
 

@@ -8,7 +8,7 @@
 #include "kernel/ball.h"
 #include "view_factors/cell_view.h"
 #include "view_factors/formula.h"
-#include "view_factors/patch_parts.h"
+#include "view_factors/prepared_patch.h"
 #include "view_factors/seen_parts.h"
 #include "view_factors/sight.h"
 

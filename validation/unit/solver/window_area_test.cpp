@@ -1,9 +1,9 @@
-// Small polygons of the visible share (exact/window_area.h).
-#include "exact/window_area.h"
-
+// Small polygons of the visible share (exact/visible_share.h).
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+
+#include "exact/visible_share.h"
 
 namespace exactff::exact {
 namespace {

@@ -1,0 +1,605 @@
+// Wavefront OBJ.
+//
+// 1. Lines are read once, in order; vertices go to the builder, faces are kept with the current group, object and
+//    material. A positive index may refer to a vertex further down, so the indices are checked at the end.
+// 2. The patches are the groups if the file has any, otherwise the objects.
+// 3. The MTL files are read, materials get their values, the faces go to the builder.
+// Problems are collected throughout; those found so far are thrown before the builder looks at the faces.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+
+#include "exactff/scene_files.h"
+#include "formats/mesh_input.h"
+#include "formats/mtl_reader.h"
+#include "formats/writers.h"
+#include "kernel/float_environment.h"
+#include "kernel/vec.h"
+#include "scene/scene.h"
+#include "text/encoding.h"
+#include "text/number_text.h"
+#include "text/phrases.h"
+#include "text/text_lines.h"
+
+namespace exactff {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kDefaultPatch = "default";
+constexpr std::string_view kNoMaterial = "(none)";
+constexpr std::size_t kMostIndices = std::numeric_limits<std::uint32_t>::max();
+
+// Distinct names in the order of their first use, in UTF-8.
+class NameTable {
+ public:
+  explicit NameTable(std::string_view first) { index(first); }
+
+  std::uint32_t index(std::string_view name) {
+    const auto [place, is_new] = index_.emplace(name, static_cast<std::uint32_t>(names_.size()));
+    if (is_new) names_.push_back(text::in_utf8(name));
+    return place->second;
+  }
+  // As it is in the file.
+  bool contains(const std::string& name) const { return index_.contains(name); }
+  const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  std::vector<std::string> names_;
+  std::unordered_map<std::string, std::uint32_t> index_;
+};
+
+struct ObjFace {
+  std::size_t line = 0;
+  std::uint32_t group = 0;
+  std::uint32_t object = 0;
+  std::uint32_t material = 0;
+  std::size_t first_corner = 0;
+  std::size_t corner_count = 0;
+};
+
+// Lines of one kind, reported in one warning together.
+struct Tally {
+  std::size_t count = 0;
+  std::size_t first_line = 0;
+  std::string first;
+
+  void add(std::size_t line, std::string_view text) {
+    if (count++ > 0) return;
+    first_line = line;
+    first = text::in_quotes(text);
+  }
+  std::string others() const {
+    if (count < 2) return {};
+    return " (and on " + std::to_string(count - 1) + (count == 2 ? " more line)" : " more lines)");
+  }
+};
+
+bool is_passed_over(std::string_view keyword) {
+  static constexpr std::array kWords = {
+      std::string_view("vt"),         std::string_view("vp"),        std::string_view("p"),
+      std::string_view("l"),          std::string_view("s"),         std::string_view("mg"),
+      std::string_view("lod"),        std::string_view("usemap"),    std::string_view("maplib"),
+      std::string_view("shadow_obj"), std::string_view("trace_obj"), std::string_view("bevel"),
+      std::string_view("c_interp"),   std::string_view("d_interp")};
+  return std::find(kWords.begin(), kWords.end(), keyword) != kWords.end();
+}
+
+class ObjReader {
+ public:
+  ObjReader(std::string_view text, const fs::path& path, const SceneOptions& options)
+      : path_(path), file_(path.string()), options_(options), builder_(file_, options), lines_(text) {}
+
+  Scene run();
+
+ private:
+  void read_line();
+  void read_vertex(std::string_view values);
+  std::array<double, 3> read_coordinates(std::string_view values);
+  void read_normal(std::string_view values);
+  void add_normal_of(std::string_view corner, Vec3& sum) const;
+  void read_face(std::string_view corners);
+  std::optional<std::uint32_t> read_corner(std::string_view corner);
+  std::uint32_t index_in(NameTable& table, std::string_view name);
+  void read_group(std::string_view names);
+  void use_material(std::string_view name);
+
+  void check_indices();
+  void check_names();
+  void warn_tallies();
+  void read_libraries();
+  void read_library(const fs::path& path, std::size_t line);
+  std::vector<fs::path> library_paths(std::string_view names) const;
+  void add_materials();
+  void add_faces();
+
+  void fail(std::string what, std::string why, std::string suggestion) {
+    problems_.add({file_, line_.number, std::move(what), std::move(why), std::move(suggestion)});
+  }
+  void warn(std::size_t line, std::string what, std::string why, std::string suggestion) {
+    builder_.warn({file_, line, std::move(what), std::move(why), std::move(suggestion)});
+  }
+
+  const fs::path path_;
+  const std::string file_;
+  const SceneOptions options_;
+  SceneBuilder builder_;
+  text::TextLines lines_;
+  text::TextLine line_;
+  text::ProblemList problems_;
+
+  std::vector<ObjFace> faces_;
+  std::vector<std::uint32_t> corners_;                      // of all faces
+  std::vector<Vec3> normals_;                               // vn
+  std::vector<std::pair<std::size_t, Vec3>> face_normals_;  // index into faces_, sum over its corners; by face
+  NameTable groups_{kDefaultPatch};
+  NameTable objects_{kDefaultPatch};
+  NameTable materials_{kNoMaterial};
+  std::vector<std::size_t> material_line_{0};  // of its first usemtl
+  ObjFace current_;                            // group, object and material for the next face
+  bool has_groups_ = false;
+  std::vector<std::pair<std::size_t, std::string>> libraries_;  // line, names
+  std::unordered_map<std::string, Material> defined_;
+  bool library_missing_ = false;
+  ConvertedNames converted_;
+  Tally several_groups_;
+  Tally unread_geometry_;
+  Tally unknown_;
+};
+
+Scene ObjReader::run() {
+  while (lines_.next(line_)) read_line();
+  if (lines_.is_cut_off()) {
+    warn(line_.number, "the last line does not end with a newline", "the file may have been cut off there",
+         "add a newline if the file is complete");
+  }
+  check_indices();
+  check_names();
+  if (faces_.empty() && problems_.empty()) {
+    throw InputError({file_, 0, "has no faces", "there is nothing to compute with", "is it a Wavefront OBJ file?"});
+  }
+  warn_tallies();
+  read_libraries();
+  problems_.throw_if_any();
+  add_materials();
+  add_faces();
+  return builder_.build();
+}
+
+void ObjReader::read_line() {
+  std::string_view rest = line_.text;
+  const std::string_view keyword = text::take_word(rest);
+  if (keyword.empty() || is_passed_over(keyword)) return;
+  if (keyword == "v") return read_vertex(rest);
+  if (keyword == "vn") return read_normal(rest);
+  if (keyword == "f" || keyword == "fo") return read_face(rest);
+  if (keyword == "g") return read_group(rest);
+  if (keyword == "o") {
+    const std::string_view name = text::trimmed(rest);
+    current_.object = index_in(objects_, name.empty() ? kDefaultPatch : name);
+  } else if (keyword == "usemtl") {
+    use_material(text::trimmed(rest));
+  } else if (keyword == "mtllib") {
+    libraries_.emplace_back(line_.number, text::trimmed(rest));
+  } else {
+    static const std::set<std::string_view> kGeometry = {"curv", "curv2", "surf", "bzp", "bsp",
+                                                         "cdc",  "cdp",   "res",  "call"};
+    static const std::set<std::string_view> kFreeForm = {"cstype", "deg", "bmat", "step", "parm",  "trim",  "hole",
+                                                         "scrv",   "sp",  "end",  "con",  "ctech", "stech", "csh"};
+    if (kGeometry.contains(keyword))
+      unread_geometry_.add(line_.number, keyword);
+    else if (!kFreeForm.contains(keyword))
+      unknown_.add(line_.number, keyword);
+  }
+}
+
+// Numbers and indices hold no '#': there, a comment may follow without a blank.
+std::string_view before_comment(std::string_view values) { return values.substr(0, values.find('#')); }
+
+void ObjReader::read_vertex(std::string_view values) {
+  if (builder_.vertex_count() == kMostIndices) {
+    throw InputError({file_, line_.number, "more than 4294967295 vertices", "indices have 32 bits", "split the scene"});
+  }
+  // A faulty vertex still counts, so that the indices in the faces below stay correct.
+  const auto [x, y, z] = read_coordinates(before_comment(values));
+  builder_.add_vertex({x, y, z});
+}
+
+// Text after x, y and z (a weight or a colour) is ignored.
+std::array<double, 3> ObjReader::read_coordinates(std::string_view values) {
+  std::array<double, 3> xyz{};
+  for (double& coordinate : xyz) {
+    const std::string_view word = text::take_word(values);
+    if (word.empty()) {
+      fail("a vertex has fewer than three coordinates", "a point needs all three", "write v x y z");
+      return xyz;
+    }
+    const text::ParsedNumber number = text::parse_number(word);
+    if (number.fault != text::NumberFault::kNone)
+      fail(describe(number.fault, word), "a coordinate is one exact number", advice(number.fault));
+    coordinate = number.value;
+  }
+  return xyz;
+}
+
+// No value depends on a normal, so an unreadable one only counts, with a length of 0.
+void ObjReader::read_normal(std::string_view values) {
+  values = before_comment(values);
+  std::array<double, 3> xyz{};
+  for (double& coordinate : xyz) {
+    const text::ParsedNumber number = text::parse_number(text::take_word(values));
+    if (number.fault != text::NumberFault::kNone) {
+      xyz = {};
+      break;
+    }
+    coordinate = number.value;
+  }
+  const double largest = std::max({std::abs(xyz[0]), std::abs(xyz[1]), std::abs(xyz[2])});
+  for (double& coordinate : xyz) coordinate = largest > 0.0 ? coordinate / largest : 0.0;
+  normals_.push_back({xyz[0], xyz[1], xyz[2]});
+}
+
+void ObjReader::read_face(std::string_view corners) {
+  ObjFace face = current_;
+  face.line = line_.number;
+  face.first_corner = corners_.size();
+  bool sound = true;
+  Vec3 normal;
+  corners = before_comment(corners);
+  for (std::string_view word = text::take_word(corners); !word.empty(); word = text::take_word(corners)) {
+    const std::optional<std::uint32_t> corner = read_corner(word);
+    sound = sound && corner;
+    if (corner) corners_.push_back(*corner);
+    if (corner && !normals_.empty()) add_normal_of(word, normal);
+  }
+  if (normal != Vec3{}) face_normals_.emplace_back(faces_.size(), normal);
+  face.corner_count = corners_.size() - face.first_corner;
+  if (corners_.size() > kMostIndices || faces_.size() == kMostIndices) {
+    throw InputError({file_, line_.number, "more than 4294967295 faces or corners of faces", "indices have 32 bits",
+                      "split the scene"});
+  }
+  if (sound && face.corner_count < 3 && options_.bad_faces == BadFaces::kReject) {
+    fail("a face has " + text::counted(face.corner_count, "vertex", "vertices"), "a polygon has at least three",
+         "remove it, or skip bad faces with --skip-bad-faces");
+  }
+  faces_.push_back(face);
+}
+
+namespace {
+
+enum class IndexText { kNumber, kTooLong, kOther };
+
+IndexText parse_index(std::string_view text, long& index) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (end != text.data() + text.size() || text.empty() || error == std::errc::invalid_argument)
+    return IndexText::kOther;
+  return error == std::errc() ? IndexText::kNumber : IndexText::kTooLong;
+}
+
+// v, v/vt, v//vn, v/vt/vn, also v/ and v//: vt and vn must be numbers.
+bool well_formed_tail(std::string_view tail) {
+  if (std::count(tail.begin(), tail.end(), '/') > 2) return false;
+  while (!tail.empty()) {
+    tail.remove_prefix(1);
+    const std::string_view part = tail.substr(0, tail.find('/'));
+    long ignored = 0;
+    if (!part.empty() && parse_index(part, ignored) == IndexText::kOther) return false;
+    tail.remove_prefix(part.size());
+  }
+  return true;
+}
+
+}  // namespace
+
+// The third number of a corner. A vn further down says nothing: all programs write them before the faces.
+void ObjReader::add_normal_of(std::string_view corner, Vec3& sum) const {
+  const std::size_t slash = corner.rfind('/');
+  if (slash == std::string_view::npos || corner.find('/') == slash) return;
+  long index = 0;
+  if (parse_index(corner.substr(slash + 1), index) != IndexText::kNumber || index == 0) return;
+  const auto count = static_cast<long>(normals_.size());
+  const long position = index > 0 ? index - 1 : count + index;
+  if (position < 0 || position >= count) return;
+  sum = kernel::sum(sum, normals_[static_cast<std::size_t>(position)]);
+}
+
+// Counted from 0; not yet checked against the end of the vertex list.
+std::optional<std::uint32_t> ObjReader::read_corner(std::string_view corner) {
+  const std::size_t slash = std::min(corner.find('/'), corner.size());
+  const auto count = static_cast<long>(builder_.vertex_count());
+  long index = 0;
+  const IndexText kind = parse_index(corner.substr(0, slash), index);
+  if (kind == IndexText::kOther || !well_formed_tail(corner.substr(slash))) {
+    fail(text::in_quotes(corner) + " is not a valid corner of a face", "a corner is a vertex number",
+         "write v, v/vt, v//vn or v/vt/vn");
+    return std::nullopt;
+  }
+  if (kind == IndexText::kNumber && index == 0) {
+    fail("vertex 0 does not exist", "vertices are numbered from 1, or backwards from -1", "correct the index");
+    return std::nullopt;
+  }
+  const long position = index > 0 ? index - 1 : count + index;
+  if (kind == IndexText::kTooLong || position < 0 || std::cmp_greater_equal(position, kMostIndices)) {
+    fail("vertex " + std::string(corner.substr(0, std::min<std::size_t>(slash, 40))) + " does not exist",
+         "the lines before define " + std::to_string(count) + " vertices", "correct the index");
+    return std::nullopt;
+  }
+  return static_cast<std::uint32_t>(position);
+}
+
+std::uint32_t ObjReader::index_in(NameTable& table, std::string_view name) {
+  if (!text::is_utf8(name)) converted_.add(line_.number, name);
+  return table.index(name);
+}
+
+void ObjReader::read_group(std::string_view names) {
+  has_groups_ = true;
+  const std::string_view all = text::trimmed(names);
+  const std::string_view first = text::take_word(names);
+  current_.group = index_in(groups_, first.empty() ? kDefaultPatch : first);
+  if (!text::trimmed(names).empty()) several_groups_.add(line_.number, all);
+}
+
+void ObjReader::use_material(std::string_view name) {
+  current_.material = index_in(materials_, name.empty() ? kNoMaterial : name);
+  if (current_.material == material_line_.size()) material_line_.push_back(line_.number);
+}
+
+void ObjReader::check_indices() {
+  const std::size_t count = builder_.vertex_count();
+  for (const ObjFace& face : faces_) {
+    for (std::size_t i = face.first_corner; i < face.first_corner + face.corner_count; ++i) {
+      if (corners_[i] < count) continue;
+      problems_.add({file_, face.line, "vertex " + std::to_string(corners_[i] + 1ULL) + " does not exist",
+                     "the file has " + text::counted(count, "vertex", "vertices"), "correct the index"});
+    }
+  }
+}
+
+// A file that mixes encodings may have two names that become one.
+void ObjReader::check_names() {
+  for (const std::string& name : converted_.names()) {
+    const std::string converted = text::in_utf8(name);
+    for (const NameTable* table : {&groups_, &objects_, &materials_}) {
+      if (!table->contains(name) || !table->contains(converted)) continue;
+      problems_.add({file_, 0, "the name " + text::in_quotes(converted) + " is written in UTF-8 and in Latin-1",
+                     "they might be meant as two names", "save the file as UTF-8"});
+    }
+  }
+}
+
+void ObjReader::warn_tallies() {
+  if (!converted_.names().empty()) builder_.warn(converted_.warning(file_));
+  if (several_groups_.count > 0) {
+    warn(several_groups_.first_line, "g " + several_groups_.first + " names several groups" + several_groups_.others(),
+         "a face belongs to one patch", "the first name is used");
+  }
+  if (unread_geometry_.count > 0) {
+    warn(unread_geometry_.first_line, unread_geometry_.first + " is not read" + unread_geometry_.others(),
+         "curves, surfaces and references to other files are not polygons", "convert them to faces");
+  }
+  if (unknown_.count > 0) {
+    warn(unknown_.first_line, "unknown keyword " + unknown_.first + unknown_.others(), "the line is ignored",
+         "is it a Wavefront OBJ file?");
+  }
+}
+
+// A name may contain blanks; one line may hold several names. Backslashes are read as slashes if necessary.
+std::vector<fs::path> ObjReader::library_paths(std::string_view names) const {
+  const auto beside = [&](std::string_view name) {
+    const fs::path as_written = path_.parent_path() / name;
+    if (name.find('\\') == std::string_view::npos) return as_written;
+    std::string other(name);
+    std::replace(other.begin(), other.end(), '\\', '/');
+    std::error_code ignored;
+    return fs::exists(as_written, ignored) ? as_written : path_.parent_path() / other;
+  };
+  std::error_code ignored;
+  if (fs::exists(beside(names), ignored)) return {beside(names)};
+  std::set<std::string_view> seen;
+  std::vector<fs::path> paths;
+  for (std::string_view name = text::take_word(names); !name.empty(); name = text::take_word(names)) {
+    if (seen.insert(name).second) paths.push_back(beside(name));
+  }
+  return paths;
+}
+
+void ObjReader::read_libraries() {
+  std::set<fs::path> done;
+  for (const auto& [line, names] : libraries_) {
+    for (const fs::path& path : library_paths(names)) {
+      if (done.insert(path).second) read_library(path, line);
+    }
+  }
+}
+
+void ObjReader::read_library(const fs::path& path, std::size_t line) {
+  std::error_code error;
+  std::optional<std::string> text;
+  std::string why;
+  try {
+    // Only a plain file: a device or a pipe named in a scene could keep the reader waiting for ever.
+    if (fs::is_regular_file(path, error)) text = text::read_text_file(path, "a Wavefront MTL file");
+  } catch (const InputError& unreadable) {
+    const Problem& problem = unreadable.problems().front();
+    why = problem.what + ": " + problem.why + "; ";
+  }
+  if (!text) {
+    library_missing_ = true;
+    return warn(line, "material file " + text::in_quotes(path.string(), text::kShownName) + " cannot be read",
+                why + "its materials get Kd 1, Ke 0", "add the file if colours or emission matter");
+  }
+  builder_.read_from(path);
+  text::ProblemList warnings;
+  for (Material& material : read_mtl(*text, path.string(), problems_, warnings)) {
+    defined_.try_emplace(material.name, std::move(material));
+  }
+  for (Problem& warning : warnings.take("warnings")) builder_.warn(std::move(warning));
+}
+
+void ObjReader::add_materials() {
+  const std::vector<std::string>& names = materials_.names();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto definition = defined_.find(names[i]);
+    builder_.add_material(definition != defined_.end() ? definition->second : Material{names[i]});
+    if (definition != defined_.end() || i == 0 || library_missing_) continue;
+    warn(material_line_[i], "material " + text::in_quotes(names[i]) + " is not defined", "it gets Kd 1, Ke 0",
+         "define it in a file named by mtllib");
+  }
+}
+
+// Patches are made in the order of their first faces.
+void ObjReader::add_faces() {
+  const std::vector<std::string>& names = has_groups_ ? groups_.names() : objects_.names();
+  std::vector<std::optional<PatchId>> patches(names.size());
+  auto normal = face_normals_.begin();
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    const ObjFace& face = faces_[i];
+    const std::uint32_t name = has_groups_ ? face.group : face.object;
+    if (!patches[name]) patches[name] = builder_.patch(names[name]);
+    const auto first = corners_.begin() + static_cast<std::ptrdiff_t>(face.first_corner);
+    std::vector<std::uint32_t> ring(first, first + static_cast<std::ptrdiff_t>(face.corner_count));
+    std::vector<std::vector<std::uint32_t>> rings;
+    rings.push_back(std::move(ring));
+    builder_.add_face(*patches[name], static_cast<MaterialId>(face.material), std::move(rings), face.line);
+    if (normal != face_normals_.end() && normal->first == i) builder_.state_normal((normal++)->second);
+  }
+}
+
+constexpr const char* kPurpose = "a Wavefront OBJ file";
+
+}  // namespace
+
+Scene formats::read_obj(std::string_view text, const fs::path& path, const SceneOptions& options) {
+  const kernel::StandardArithmetic arithmetic;
+  if (text.empty())
+    throw InputError({path.string(), 0, "is empty", "there is nothing to compute with", "give a Wavefront OBJ file"});
+  return ObjReader(text, path, options).run();
+}
+
+Scene read_obj(std::istream& in, const fs::path& name, const SceneOptions& options) {
+  return formats::read_obj(text::read_text(in, name.string(), kPurpose), name, options);
+}
+
+Scene read_obj(const fs::path& path, const SceneOptions& options) {
+  return SceneInside::read_from(path, formats::read_obj(text::read_text_file(path, kPurpose), path, options));
+}
+
+}  // namespace exactff
+
+namespace exactff::formats {
+
+// --- Writer ---
+
+// Wavefront OBJ and MTL.
+
+namespace {
+
+constexpr NameRules kObjNames = {.comment = '#', .only_before_word = true, .joins_lines = true};
+
+bool is_default(const Material& material) {
+  return material.name == kNoMaterial && material.reflectance == Rgb{1.0, 1.0, 1.0} && !material.emits();
+}
+
+std::vector<std::string> material_names(const Scene& scene, Losses& losses) {
+  std::vector<std::string> names;
+  for (const Material& material : scene.materials()) names.push_back(material.name);
+  return output_names(std::move(names), kObjNames, "material", losses);
+}
+
+// The name of a group is one word, that of an object the rest of its line.
+bool patches_are_groups(const std::vector<std::string>& patches) {
+  return std::none_of(patches.begin(), patches.end(),
+                      [](const std::string& name) { return name.find_first_of(" \t\v\f") != std::string::npos; });
+}
+
+// True if the faces use all materials in their order, the default one apart. Otherwise they are named before the faces,
+// since a reader numbers them by their first use.
+bool used_in_order(const Scene& scene, const std::vector<OutputFace>& faces) {
+  std::size_t next = !scene.materials().empty() && scene.materials()[0].name == kNoMaterial ? 1 : 0;
+  for (const OutputFace& face : faces) {
+    const std::size_t material = index_of(scene.face(face.face).material);
+    if (material == next) ++next;
+    if (material > next) return false;
+  }
+  return next == scene.materials().size();
+}
+
+void append_faces(std::string& out, const Scene& scene, const std::vector<OutputFace>& faces,
+                  const std::vector<std::string>& patches, const std::vector<std::string>& materials) {
+  const char* const keyword = patches_are_groups(patches) ? "g " : "o ";
+  std::optional<PatchId> patch;
+  std::optional<MaterialId> material;
+  for (const OutputFace& output : faces) {
+    const Face& face = scene.face(output.face);
+    if (patch != face.patch) out += keyword + patches[index_of(face.patch)] + '\n';
+    const bool same = material == face.material || (!material && scene.material(face.material).name == kNoMaterial);
+    if (!same) out += "usemtl " + materials[index_of(face.material)] + '\n';
+    if (!same || material) material = face.material;
+    patch = face.patch;
+    out += 'f';
+    for (const std::uint32_t corner : output.corners) (out += ' ') += std::to_string(corner + 1ULL);
+    out += '\n';
+  }
+}
+
+void append_colour(std::string& out, const char* keyword, const Rgb& colour) {
+  out += keyword;
+  append_point(out, {colour.r, colour.g, colour.b});
+  out += '\n';
+}
+
+}  // namespace
+
+bool needs_mtl(const Scene& scene) {
+  return !std::all_of(scene.materials().begin(), scene.materials().end(), is_default);
+}
+
+std::string write_mtl(const Scene& scene, Losses& losses) {
+  const std::vector<std::string> names = material_names(scene, losses);
+  std::string out;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Material& material = scene.materials()[i];
+    if (is_default(material)) continue;
+    out += "newmtl " + names[i] + '\n';
+    append_colour(out, "Kd", material.reflectance);
+    append_colour(out, "Ke", material.radiosity);
+  }
+  return out;
+}
+
+std::string write_obj(const Scene& scene, const std::string& mtl, Losses& losses) {
+  const std::vector<OutputFace> faces = output_faces(scene, Polygons::kAny, "OBJ", losses);
+  const std::vector<std::string> patches = output_names(patch_names(scene), kObjNames, "patch", losses);
+  Losses told_by_mtl({});
+  const std::vector<std::string> materials = material_names(scene, told_by_mtl);
+  std::string out;
+  if (!mtl.empty()) {
+    if (fit_name(mtl, kObjNames) != mtl) {
+      throw InputError({losses.file(), 0, "the name of its MTL file cannot be written into an OBJ file",
+                        "it contains characters that OBJ does not allow", "choose another name"});
+    }
+    out += "mtllib " + mtl + '\n';
+  }
+  for (const Vec3& vertex : scene.vertices()) {
+    out += 'v';
+    append_point(out, vertex);
+    out += '\n';
+  }
+  if (!used_in_order(scene, faces)) {
+    for (const std::string& name : materials) out += "usemtl " + name + '\n';
+    if (!materials.empty()) out += "usemtl " + std::string(kNoMaterial) + '\n';
+  }
+  append_faces(out, scene, faces, patches, materials);
+  return out;
+}
+
+}  // namespace exactff::formats

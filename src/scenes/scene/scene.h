@@ -1,0 +1,100 @@
+// What a Scene holds. Immutable once SceneBuilder::build has returned.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "exactff/scene.h"
+#include "scene/closed_surfaces.h"
+#include "scene/contacts.h"
+#include "scene/edges.h"
+#include "scene/panels.h"
+#include "scene/shaft_tree.h"
+
+namespace exactff {
+
+struct Scene::Data {
+  const SceneId id = next_id();
+  std::string file;                          // its name in messages
+  std::vector<std::filesystem::path> files;  // that it was read from
+  std::vector<Vec3> vertices;                // finite, no negative zero
+  std::vector<Material> materials;
+  std::vector<Patch> patches;
+  std::unordered_map<std::string, PatchId> patch_by_name;
+  std::vector<Face> faces;             // in file order
+  std::vector<Piece> pieces;           // in the order of their faces
+  std::vector<std::uint32_t> corners;  // vertex indices of all pieces
+  std::vector<Problem> warnings;
+  std::size_t warnings_of_glass = 0;  // that many come first
+
+  mutable std::once_flag places_found;  // see places()
+  mutable std::vector<std::uint32_t> places;
+  mutable std::once_flag planes_found;  // see planes()
+  mutable Planes planes;
+  mutable std::once_flag tree_built;  // the tree is built at first use: see shaft_tree()
+  mutable ShaftTree tree;
+  mutable std::once_flag panels_found;  // see panels()
+  mutable Panels panels;
+  mutable std::once_flag panel_tree_built;  // see panel_tree()
+  mutable ShaftTree panel_tree;
+  mutable std::once_flag surfaces_found;  // see closed_surfaces()
+  mutable ClosedSurfaces surfaces;
+  mutable std::once_flag contacts_found;  // see contacts()
+  mutable Contacts contacts;
+  mutable std::once_flag connectedness_found;  // see edges_per_silhouette()
+  mutable double edges_per_silhouette = 1.0;
+  mutable std::once_flag edges_found;  // see scene_edges()
+  mutable SceneEdges edges;
+  mutable std::once_flag extent_found;  // see extent()
+  mutable Extent extent;
+
+ private:
+  static SceneId next_id();
+};
+
+struct SceneInside {
+  using Data = Scene::Data;
+  [[nodiscard]] static const Data& data(const Scene& scene) { return scene.data(); }
+  // For a scene that nothing else uses yet.
+  static Scene read_from(const std::filesystem::path& file, Scene scene) {
+    scene.data_->files.insert(scene.data_->files.begin(), file);
+    return scene;
+  }
+};
+
+// --- Misuse ---
+
+// Checks for misuse of the library that the compiler cannot find: exceptions with a message.
+
+// For objects that own their data by a pointer, which is null after a move. Throws std::logic_error if it is null.
+template <class Owner>
+auto& owned_by(const Owner& owner, const char* what) {
+  if (!owner)
+    throw std::logic_error(std::string("this ") + what + " was moved from; it can only be assigned to or destroyed");
+  return *owner;
+}
+
+// The following throw std::invalid_argument.
+[[noreturn]] void refuse_argument(const std::string& what, const std::string& why);
+void require_face(const Scene& scene, FaceId face);
+// Also checks the ids of the selection.
+void require_of_scene(const Scene& scene, const Selection& selection);
+// `what`: "source"
+void require_of_scene(const Scene& scene, SceneId made_by, const char* what);
+void require_scene(const Scene* scene);  // of a request
+
+// --- Places ---
+
+// Finds the vertices that lie at one position. A vertex index that identifies a position is called a place.
+
+// For every vertex the lowest index of a vertex at its position. Computed at the first
+// call; safe to call from several threads.
+[[nodiscard]] std::span<const std::uint32_t> places(const Scene& scene);
+
+}  // namespace exactff

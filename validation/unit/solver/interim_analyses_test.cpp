@@ -1,0 +1,239 @@
+// Interim analyses of a function at random points: means over parts of different weights, and how many points they
+// take.
+#include "view_factors/interim_analyses.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "exactff/scene.h"
+#include "generate/plain_scene.h"
+#include "kernel/split_mix.h"
+#include "kernel/vec.h"
+#include "view_factors/exact_scene.h"
+#include "view_factors/prepared_patch.h"
+#include "view_factors/sampled_factor.h"
+#include "view_factors/seen_parts.h"
+#include "view_factors/strata.h"
+
+namespace exactff::view_factors {
+namespace {
+
+constexpr double kRisk = 1e-6;
+constexpr std::uint64_t kAnyEffort = std::uint64_t{1} << 62;
+
+// 1 on a strip of each part's x, 0 elsewhere.
+class Strip : public SampledFunction {
+ public:
+  Strip(std::vector<Part> parts, const Units& units, double from, double to)
+      : SampledFunction(std::move(parts)), units_(units), from_(from), to_(to) {}
+  [[nodiscard]] Span span(const Tile&, bool) override { return {}; }
+  [[nodiscard]] std::optional<double> at(const Point& point, std::size_t) override {
+    ++points_;
+    const double x = std::ldexp(point.at.x, static_cast<int>(units_.exponent + units_.shift));
+    return x >= from_ && x < to_ ? 1.0 : 0.0;
+  }
+  [[nodiscard]] std::uint64_t effort() const override { return 300 * points_; }
+
+ private:
+  const Units& units_;
+  double from_, to_;
+  std::uint64_t points_ = 0;
+};
+
+class AnalysesOfStrips : public testing::Test {
+ protected:
+  AnalysesOfStrips() : scene_(build()), exact_(scene_) {}
+  static Scene build() {
+    generate::PlainScene plain;
+    plain.add_ring(plain.patch("left"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+    plain.add_ring(plain.patch("right"), {{2, 0, 0}, {3, 0, 0}, {2.5, 2, 0}});
+    return generate::build(plain);
+  }
+  // A square and a triangle of area 1 each.
+  [[nodiscard]] std::vector<Part> parts(double left, double right) const {
+    std::vector<Part> result;
+    for (const auto& [name, weight] : {std::pair("left", left), std::pair("right", right)}) {
+      result.push_back(parts_of(exact_, scene_.select(name)).front());
+      result.back().weight = weight;
+    }
+    return result;
+  }
+
+  const Scene scene_;
+  const ExactScene exact_;
+};
+
+TEST_F(AnalysesOfStrips, HoldTheirMeansWhateverThePartsWeigh) {
+  for (const auto& [left, right] : {std::pair(1.0, 1.0), std::pair(1e-6, 1.0), std::pair(3.0, 0.25)}) {
+    for (const double width : {0.001, 0.1, 0.5}) {
+      // Of the square alone, and all of both.
+      Strip strip(parts(left, right), exact_.units, 0.25, 0.25 + width);
+      Strip all(parts(left, right), exact_.units, -1.0, 4.0);
+      const double mean = width * left / (left + right);
+      InterimAnalyses analyses(strip, exact_.units, kRisk, 0);
+      for (int analysis = 0; analysis < 3; ++analysis) {
+        const InterimAnalyses::Mean found = analyses.analyse();
+        EXPECT_LE(std::abs(found.value - mean), found.error) << left << ' ' << width;
+        EXPECT_LE(found.error, 0.6);
+        (void)analyses.prepare(0.5 * found.error, kAnyEffort, 20000);
+      }
+      InterimAnalyses of_all(all, exact_.units, kRisk, 0);
+      EXPECT_NEAR(of_all.analyse().value, 1.0, 1e-12);
+    }
+  }
+}
+
+TEST_F(AnalysesOfStrips, TakeNoMorePointsOrEffortThanTheyMay) {
+  Strip strip(parts(1.0, 1.0), exact_.units, 0.25, 0.5);
+  InterimAnalyses analyses(strip, exact_.units, kRisk, 0);
+  (void)analyses.analyse();
+  const std::size_t first = analyses.points();
+  EXPECT_GE(first, kPointsOfFirstAnalysis);
+  EXPECT_EQ(analyses.effort_of_point(), 300U);
+  EXPECT_FALSE(analyses.prepare(1e-6, kAnyEffort, 2000));
+  EXPECT_FALSE(analyses.prepare(0.05, 300 * first + 3000, 1 << 20));
+  ASSERT_TRUE(analyses.prepare_for_all(4000));
+  (void)analyses.analyse();
+  EXPECT_LE(analyses.points(), 4000U);
+  EXPECT_GT(analyses.points(), 3500U);
+}
+
+TEST_F(AnalysesOfStrips, AreAsNarrowAsExpected) {
+  Strip strip(parts(1.0, 1.0), exact_.units, -1.0, 4.0);
+  InterimAnalyses analyses(strip, exact_.units, kRisk, 0);
+  (void)analyses.analyse();
+  ASSERT_TRUE(analyses.prepare(0.01, kAnyEffort, 1 << 20));
+  const InterimAnalyses::Mean found = analyses.analyse();
+  EXPECT_LE(1.0 - found.value + found.error, 0.01);
+}
+
+// Analyses before, of which the risk is one with theirs, make them wider.
+TEST_F(AnalysesOfStrips, AreWiderAfterOthers) {
+  Strip strip(parts(1.0, 1.0), exact_.units, 0.25, 0.5);
+  InterimAnalyses first(strip, exact_.units, kRisk, 0), later(strip, exact_.units, kRisk, 100);
+  EXPECT_EQ(later.count(), 100U);
+  EXPECT_LT(first.analyse().error, later.analyse().error);
+  EXPECT_EQ(later.count(), 101U);
+}
+
+// A quadratic function, of which less is left to chance the better it is known: with four times the points, much less
+// than a quarter of the error. Its bounds say so, or only its range.
+class Bowl : public SampledFunction {
+ public:
+  Bowl(std::vector<Part> parts, const Units& units, bool has_change)
+      : SampledFunction(std::move(parts)), units_(units), has_change_(has_change) {}
+  [[nodiscard]] Span span(const Tile& tile, bool) override {
+    Span span{.range = 0.5};
+    if (!has_change_) return span;
+    const std::vector<Vec3> corners = corners_of(parts()[tile.part], tile);
+    const Vec3 middle = sides_of(parts()[tile.part], tile).at(middle_of(tile));
+    span.change = 0.0;
+    for (const Vec3& corner : corners) {
+      span.change = std::max(span.change, scaled(0.5 * std::sqrt(2.0) * kernel::distance(corner, middle)));
+    }
+    return span;
+  }
+  [[nodiscard]] std::optional<double> at(const Point& point, std::size_t) override {
+    return 0.25 * (std::pow(scaled(point.at.x), 2.0) + std::pow(scaled(point.at.y), 2.0));
+  }
+  [[nodiscard]] std::uint64_t effort() const override { return 0; }
+
+ private:
+  [[nodiscard]] double scaled(double x) const {
+    return std::ldexp(x, static_cast<int>(units_.exponent + units_.shift));
+  }
+
+  const Units& units_;
+  bool has_change_;
+};
+
+TEST_F(AnalysesOfStrips, KnowSmoothFunctionsWell) {
+  std::vector<Part> square = parts(1.0, 1.0);
+  square.pop_back();
+  for (const bool has_change : {false, true}) {
+    Bowl bowl(square, exact_.units, has_change);
+    InterimAnalyses analyses(bowl, exact_.units, kRisk, 0);
+    std::vector<double> errors;
+    for (const std::size_t points : {0, 1000, 5000, 21000}) {
+      const bool is_prepared = points == 0 || analyses.prepare_for_all(points);
+      ASSERT_TRUE(is_prepared);
+      const InterimAnalyses::Mean found = analyses.analyse();
+      // Once there are enough of them, control variates leave little, but for their slopes if these may be no steeper.
+      const double share = points < 5000 ? 1.0 : has_change ? 0.3 : 0.01;
+      EXPECT_LE(std::abs(found.value - 1.0 / 6.0), share * found.error) << has_change;
+      errors.push_back(found.error);
+    }
+    // r L alone, if the range is all that is known.
+    const double least = 0.25 * std::log(2e6) / static_cast<double>(analyses.strata());
+    EXPECT_GT(errors.back(), has_change ? 0.0 : least);
+    EXPECT_LT(errors[3], (has_change ? 0.3 : 1.5) * least);
+    EXPECT_LT(errors[3], (has_change ? 0.2 : 0.3) * errors[2]);
+  }
+}
+
+// 0 or 1 at each place, whatever it is nearby.
+class Noise : public SampledFunction {
+ public:
+  Noise(std::vector<Part> parts, std::uint64_t seed) : SampledFunction(std::move(parts)), seed_(seed) {}
+  [[nodiscard]] Span span(const Tile&, bool) override { return {}; }
+  [[nodiscard]] std::optional<double> at(const Point& point, std::size_t) override {
+    const std::uint64_t bits = std::bit_cast<std::uint64_t>(point.at.x) ^ std::bit_cast<std::uint64_t>(point.at.y) << 1;
+    return kernel::split_mix(seed_, bits) >> 63 == 0 ? 0.0 : 1.0;
+  }
+  [[nodiscard]] std::uint64_t effort() const override { return 0; }
+
+ private:
+  std::uint64_t seed_;
+};
+
+TEST_F(AnalysesOfStrips, DoNotTakeNoiseForKnown) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Noise noise(parts(1.0, 1.0), seed);
+    InterimAnalyses analyses(noise, exact_.units, kRisk, 0);
+    for (const std::size_t points : {0, 2000, 10000}) {
+      const bool is_prepared = points == 0 || analyses.prepare_for_all(points);
+      ASSERT_TRUE(is_prepared);
+      const InterimAnalyses::Mean found = analyses.analyse();
+      EXPECT_LE(std::abs(found.value - 0.5), found.error) << seed;
+      // Five standard errors of points that are independent; half of each square at least is left by any control
+      // variate.
+      EXPECT_GT(found.error, 5.0 * 0.5 / std::sqrt(2.0 * static_cast<double>(analyses.strata()))) << seed;
+    }
+  }
+}
+
+// No interval is narrower than what is proved of the point factor asks for, however much the points agree.
+TEST(SampledMean, IsAsWideAsWhatIsProvedSays) {
+  generate::PlainScene plain;
+  plain.add_ring(plain.patch("below"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  plain.add_ring(plain.patch("above"), {{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}});
+  const Scene scene = generate::build(plain);
+  const ExactScene exact(scene);
+  const SeenParts seen(exact);
+  const PreparedPatch below(exact, scene.select("below"), Columns::kPatches);
+  const PreparedPatch above(exact, scene.select("above"), Columns::kPatches);
+  SampledMean mean(exact, seen, below, above, 20000, 1.0);
+  constexpr double kTruth = 0.19982489569838746;
+  double last = 1.0;
+  for (int analysis = 0; analysis < 3; ++analysis) {
+    ASSERT_TRUE(mean.analyse(kAnyEffort));
+    const double width = mean.upper() - mean.lower();
+    EXPECT_LE(mean.lower(), kTruth);
+    EXPECT_GE(mean.upper(), kTruth);
+    EXPECT_LT(width, last);
+    last = width;
+  }
+  EXPECT_LT(last, 1e-3);
+  // Of 20,000 points in any number of analyses.
+  EXPECT_FALSE(mean.may_reach(1e-7, kAnyEffort));
+  EXPECT_TRUE(mean.may_reach(last, kAnyEffort));
+}
+
+}  // namespace
+}  // namespace exactff::view_factors
