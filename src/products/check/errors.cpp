@@ -1,37 +1,85 @@
+// The errors of single values and of many.
 #include "check/errors.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
+#include "check/report.h"
 #include "kernel/expect.h"
+#include "kernel/float_environment.h"
 #include "kernel/statistics.h"
+#include "text/phrases.h"
 
 namespace exactff::check {
 namespace {
 
-Distribution distribution(const std::vector<double>& ascending) {
-  if (ascending.empty()) return {};
-  const double largest = ascending.back();
-  return {nearest_rank(ascending, 0.5),
-          nearest_rank(ascending, 0.9),
-          nearest_rank(ascending, 0.99),
-          nearest_rank(ascending, 0.999),
-          largest,
-          std::isinf(largest) ? largest : kernel::root_mean_square(ascending, largest)};
+// Numbers the doubles so that neighbours have neighbouring numbers. Both zeros have 0.
+std::int64_t ordinal(double value) {
+  const auto bits = std::bit_cast<std::int64_t>(value);
+  return bits >= 0 ? bits : std::numeric_limits<std::int64_t>::min() - bits;
+}
+
+double ulps_between(double a, double b) {
+  if (!std::isfinite(a) || !std::isfinite(b)) return std::numeric_limits<double>::infinity();
+  const std::int64_t low = std::min(ordinal(a), ordinal(b)), high = std::max(ordinal(a), ordinal(b));
+  return static_cast<double>(static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low));  // cannot overflow
+}
+
+std::string bounds_of(const Expected& expected) {
+  std::string text = text::shortest(expected.value);
+  if (!expected.status) return text;
+  if (expected.lower < expected.upper) {
+    text += " in [" + text::shortest(expected.lower) + ", " + text::shortest(expected.upper) + "]";
+  }
+  return text + ", " + std::string(to_string(*expected.status));
 }
 
 }  // namespace
 
-double nearest_rank(const std::vector<double>& ascending, double share) {
-  if (ascending.empty()) return 0.0;
-  const auto n = static_cast<double>(ascending.size());
-  double rank = std::floor(share * n);
-  // Compares k / n with the share as written: both are rounded from the same fraction.
-  while (rank < n && rank / n < share) ++rank;
-  return ascending[static_cast<std::size_t>(std::clamp(rank, 1.0, n)) - 1];
+Expected::Expected(double number) : value(number), lower(number), upper(number) {}
+Expected::Expected(const FormFactor& f) : value(f.value), lower(f.lower), upper(f.upper), status(f.status) {}
+Expected::Expected(const TruthRow& row) : value(row.value), lower(row.lower), upper(row.upper), status(row.status) {}
+
+double reference_of(double actual, const Expected& expected) {
+  if (expected.status != Status::kNotCertified || std::isnan(actual)) return expected.value;
+  return std::clamp(actual, expected.lower, expected.upper);
 }
+
+double relative_error(double error, double reference, double floor) {
+  if (error == 0.0) return 0.0;
+  const double unit = std::max(std::abs(reference), floor);
+  return unit == 0.0 ? std::numeric_limits<double>::infinity() : std::abs(error) / unit;
+}
+
+Difference difference(double actual, const Expected& expected) {
+  const kernel::StandardArithmetic arithmetic;
+  const double reference = reference_of(actual, expected);
+  const double error = actual - reference;
+  return {error, relative_error(error, reference, 0.0), ulps_between(actual, reference)};
+}
+
+bool is_near(double actual, const Expected& expected, const Tolerance& tolerance) {
+  const kernel::StandardArithmetic arithmetic;
+  const Difference d = difference(actual, expected);
+  return std::abs(d.error) <= tolerance.absolute || d.relative <= tolerance.relative;
+}
+
+std::string describe_difference(double actual, const Expected& expected, const Tolerance& tolerance) {
+  const kernel::StandardArithmetic arithmetic;
+  const Difference d = difference(actual, expected);
+  std::string text = "  actual    " + text::shortest(actual) + "\n  expected  " + bounds_of(expected) + "\n";
+  if (!std::isfinite(actual)) return text + "  the actual value is not a finite number";
+  text += "  error     " + text::shortest(d.error) + ", relative " + text::shortest(d.relative) + ", " +
+          text::short_number(d.ulps, 6) + (d.ulps == 1.0 ? " ulp" : " ulps") + "\n  tolerance ";
+  if (tolerance.relative == 0.0) return text + text::shortest(tolerance.absolute);
+  if (tolerance.absolute == 0.0) return text + "relative " + text::shortest(tolerance.relative);
+  return text + text::shortest(tolerance.absolute) + ", or relative " + text::shortest(tolerance.relative);
+}
+
+// --- Many values ---
 
 Errors::Errors(const Truth& truth, const std::vector<Measured>& values, double relative_floor)
     : truth_(truth), values_(values) {
@@ -67,13 +115,12 @@ double Errors::magnitude(Index i, Measure measure) const {
 
 RowError Errors::row(Index i) const {
   const TruthRow& truth = truth_row(i);
-  return {truth.receiver,   truth_.source_of(truth),
-          truth.line,       values_[i].line,
-          truth.status,     truth.value,
-          values_[i].value, error_[i],
-          relative_[i],     radiosity(i),
-          truth.lower,      truth.upper,
-          truth.claim};
+  const std::string& source = truth_.source_of(truth);
+  return {truth.receiver, source,           name_of(truth_.keys, truth.receiver, source),
+          truth.line,     values_[i].line,  truth.status,
+          truth.value,    values_[i].value, error_[i],
+          relative_[i],   radiosity(i),     truth.lower,
+          truth.upper,    truth.claim};
 }
 
 Errors::Index Errors::worst(const std::vector<Index>& among, Measure measure) const {
@@ -110,6 +157,11 @@ std::vector<double> Errors::sorted_magnitudes(const std::vector<Index>& among, M
   return magnitudes;
 }
 
+Distribution Errors::distribution(const std::vector<Index>& among, Measure measure) const {
+  const kernel::Distribution d = kernel::distribution(sorted_magnitudes(among, measure));
+  return {d.median, d.p90, d.p99, d.p999, d.max, d.rms};
+}
+
 Statistics Errors::statistics(const std::vector<Index>& among) const {
   Statistics result;
   bool rho_b_known = true;
@@ -131,12 +183,12 @@ Statistics Errors::statistics(const std::vector<Index>& among) const {
   }
   const std::size_t finite = result.rows - result.not_finite;
   if (finite > 0) result.bias = sum / static_cast<double>(finite);
-  if (truth_.is_image) {
+  if (truth_.kind == kImage) {
     result.relative_mse = finite > 0 ? relative_squares / static_cast<double>(finite) : 0.0;
   }
-  result.absolute = distribution(sorted_magnitudes(among, Measure::kAbsolute));
-  result.relative = distribution(sorted_magnitudes(among, Measure::kRelative));
-  if (rho_b_known) result.radiosity = distribution(sorted_magnitudes(among, Measure::kRadiosity));
+  result.absolute = distribution(among, Measure::kAbsolute);
+  result.relative = distribution(among, Measure::kRelative);
+  if (rho_b_known) result.radiosity = distribution(among, Measure::kRadiosity);
   return result;
 }
 

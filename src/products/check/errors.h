@@ -13,6 +13,8 @@ namespace exactff::check {
 // the truth.
 inline constexpr double kRelativeMseEpsilon = 0.01;
 
+inline constexpr std::string_view kImage = "image";  // the kind of a truth of pixels
+
 // F*: the true value; if it is not certified, the point of its enclosure nearest to `actual`.
 [[nodiscard]] double reference_of(double actual, const Expected& expected);
 // The error divided by max(|reference|, floor). 0 if the error is 0; otherwise infinite if both are 0.
@@ -26,8 +28,6 @@ class Errors {
   using Index = std::uint32_t;  // index into the values
   [[nodiscard]] std::size_t size() const { return values_.size(); }
   [[nodiscard]] bool is_finite(Index i) const;
-  [[nodiscard]] double error(Index i) const { return error_[i]; }
-  [[nodiscard]] double relative(Index i) const { return relative_[i]; }
   [[nodiscard]] std::optional<double> radiosity(Index i) const;
   // The magnitude of the error: infinite for values that are not finite, 0 if rho B is not known.
   [[nodiscard]] double magnitude(Index i, Measure measure) const;
@@ -45,12 +45,11 @@ class Errors {
   [[nodiscard]] std::vector<double> sorted_magnitudes(const std::vector<Index>& among, Measure measure) const;
 
  private:
+  [[nodiscard]] Distribution distribution(const std::vector<Index>& among, Measure measure) const;
+
   const Truth& truth_;
   const std::vector<Measured>& values_;
   std::vector<double> error_, relative_;
 };
-
-// The smallest of these values that at least the given share of them does not exceed; 0 if there are none.
-[[nodiscard]] double nearest_rank(const std::vector<double>& ascending, double share);
 
 }  // namespace exactff::check
