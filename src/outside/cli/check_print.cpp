@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iostream>
 
-#include "check/errors.h"
 #include "check/report.h"
 #include "cli/text_table.h"
 #include "text/escape.h"

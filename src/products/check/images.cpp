@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "check/errors.h"
+#include "check/report.h"
 #include "exr/other_image.h"
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"

@@ -135,6 +135,7 @@ std::string json_text(const Report& report) {
 namespace {
 
 constexpr int kFormat = 1;
+constexpr const char* kNoBaseline = "is not a baseline that this program can read";
 
 // The statistics in a baseline file. They must not get worse.
 constexpr std::array<std::string_view, 5> kRatcheted = {"max-abs", "max-rel", "rms", "quantile 0.99", "eps-b"};
@@ -162,67 +163,23 @@ ordered_json numbers_json(const Statistics& statistics) {
   return json;
 }
 
-class Baseline {
- public:
-  explicit Baseline(const std::filesystem::path& path) : file_(path.string()) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) {
-      throw InputError({file_, 0, "this baseline file does not exist", "there is nothing to compare with",
-                        "record one with --write-baseline"});
-    }
-    json_ = ordered_json::parse(text::read_text_file(path, "a file written by --write-baseline"), nullptr, false);
-    if (!json_.is_object() || !json_.contains("baseline") || json_["baseline"] != kFormat) refuse_format();
-  }
-
-  void require_same_rows(const Report& report) const {
-    if (at({"truth", "identity"}) == report.identity && at({"relative_floor"}) == report.criteria.relative_floor)
-      return;
-    throw InputError({file_, 0, "was recorded with different rows, true values or relative floor",
-                      "its errors cannot be compared", "record a new one with --write-baseline"});
-  }
-
-  // Nothing if the baseline does not have the statistic.
-  [[nodiscard]] std::optional<double> recorded(const std::string& source, std::string_view name) const {
-    const ordered_json& statistics = source.empty() ? at({"overall"}) : at({"sources", text::utf8(source)});
-    if (!statistics.is_object()) refuse_format();
-    const auto found = statistics.find(std::string(name));
-    if (found == statistics.end()) return std::nullopt;
-    if (found->is_null()) return std::numeric_limits<double>::infinity();
-    if (!found->is_number()) refuse_format();
-    return found->get<double>();
-  }
-
- private:
-  [[noreturn]] void refuse_format() const {
-    throw InputError({file_, 0, "is not a baseline that this program can read", "there is nothing to compare with",
-                      "record one with --write-baseline"});
-  }
-
-  [[nodiscard]] const ordered_json& at(std::initializer_list<std::string> path) const {
-    const ordered_json* node = &json_;
-    for (const std::string& key : path) {
-      if (!node->is_object() || !node->contains(key)) refuse_format();
-      node = &(*node)[key];
-    }
-    return *node;
-  }
-
-  std::string file_;
-  ordered_json json_;
-};
-
-void hold(Report& report, const Baseline& baseline, const std::string& source, const Statistics& statistics,
+// Throws a nlohmann::json::exception if the baseline has not these statistics.
+void hold(Report& report, const ordered_json& baseline, const std::string& source, const Statistics& statistics,
           double slack) {
   constexpr double kRoundings = 4.0 * std::numeric_limits<double>::epsilon();
+  const auto& known = (source.empty() ? baseline.at("overall") : baseline.at("sources").at(text::utf8(source)))
+                          .get_ref<const ordered_json::object_t&>();
   for (const std::string_view name : kRatcheted) {
-    const auto recorded = baseline.recorded(source, name);
+    const auto found = known.find(std::string(name));
     const Ratcheted one = ratchet_of(statistics, name);
-    if (!recorded || !one.now) continue;
-    const double allowance = std::isinf(*recorded) ? 0.0 : std::max(*recorded * slack, kRoundings * one.scale);
-    const double limit = *recorded + allowance;
+    if (found == known.end() || !one.now) continue;
+    const double recorded =
+        found->second.is_null() ? std::numeric_limits<double>::infinity() : found->second.get<double>();
+    const double allowance = std::isinf(recorded) ? 0.0 : std::max(recorded * slack, kRoundings * one.scale);
+    const double limit = recorded + allowance;
     const std::string criterion = "baseline " + std::string(name);
     report.verdicts.push_back({criterion, source, *one.now, limit, *one.now <= limit, {}});
-    if (*one.now < *recorded - allowance) report.improvements.push_back({criterion, source, *recorded, *one.now});
+    if (*one.now < recorded - allowance) report.improvements.push_back({criterion, source, recorded, *one.now});
   }
 }
 
@@ -256,11 +213,28 @@ void hold_against_baseline(Report& report, const std::filesystem::path& path, do
                       .why = "the slack is a share of the recorded errors",
                       .suggestion = "give 0 or more, for example 0.1"});
   }
-  const Baseline baseline(path);
-  baseline.require_same_rows(report);
-  if (!report.criteria.per_source) hold(report, baseline, {}, report.overall, slack);
-  for (std::size_t s = 0; report.criteria.per_source && s < report.sources.size(); ++s) {
-    hold(report, baseline, report.sources[s], report.by_source[s], slack);
+  const auto refuse = [&](const char* what, const char* why, const char* suggestion) {
+    throw InputError({path.string(), 0, what, why, suggestion});
+  };
+  constexpr const char* kNothing = "there is nothing to compare with";
+  constexpr const char* kRecord = "record one with --write-baseline";
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) refuse("this baseline file does not exist", kNothing, kRecord);
+  const std::string text = text::read_text_file(path, "a file written by --write-baseline");
+  try {
+    const ordered_json baseline = ordered_json::parse(text);
+    if (baseline.at("baseline") != kFormat) refuse(kNoBaseline, kNothing, kRecord);
+    if (baseline.at("truth").at("identity") != report.identity ||
+        baseline.at("relative_floor") != report.criteria.relative_floor) {
+      refuse("was recorded with different rows, true values or relative floor", "its errors cannot be compared",
+             "record a new one with --write-baseline");
+    }
+    if (!report.criteria.per_source) hold(report, baseline, {}, report.overall, slack);
+    for (std::size_t s = 0; report.criteria.per_source && s < report.sources.size(); ++s) {
+      hold(report, baseline, report.sources[s], report.by_source[s], slack);
+    }
+  } catch (const nlohmann::json::exception&) {
+    refuse(kNoBaseline, kNothing, kRecord);
   }
 }
 

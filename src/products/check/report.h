@@ -15,6 +15,14 @@
 
 namespace exactff::check {
 
+inline constexpr std::string_view kImage = "image";  // the kind of a truth of pixels
+
+// In the relative mean square error of images, e^2 / (t^2 + this), as papers on denoising have it: e is the error, t
+// the truth.
+inline constexpr double kRelativeMseEpsilon = 0.01;
+
+// Throws InputError if a limit is invalid.
+void check_criteria(const Criteria& criteria);
 // Of each candidate. Problems of all of them are thrown together.
 [[nodiscard]] std::vector<Report> compare_all(const std::filesystem::path& truth,
                                               std::span<const std::filesystem::path> candidates,
@@ -38,12 +46,10 @@ namespace exactff::check {
 
 // --- For other programs ---
 
-// The whole report.
 [[nodiscard]] nlohmann::ordered_json json_of(const Report& report);
 [[nodiscard]] std::string json_text(const Report& report);
 [[nodiscard]] nlohmann::ordered_json json_of(const Distribution& distribution);
-// JSON has neither infinity nor NaN: they are written as words.
-[[nodiscard]] nlohmann::ordered_json json_number(double value);
+[[nodiscard]] nlohmann::ordered_json json_number(double value);  // infinity and NaN as words, which JSON has not
 
 // JUnit XML as Jenkins, GitLab and others read it: a test suite for each report, with a test case for each verdict.
 [[nodiscard]] std::string junit_xml(std::span<const Report> reports);

@@ -19,48 +19,39 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// What the scoreboard says of one program.
-struct Line {
-  std::size_t cases, answered, limits, kept;
-  double median_digits, worst_digits;
-  const Distribution& errors;
-
-  explicit Line(const Report& report)
-      : cases(report.truth_rows),
-        answered(report.overall.rows - report.overall.not_finite),
-        limits(report.verdicts.size()),
-        kept(static_cast<std::size_t>(
-            std::ranges::count_if(report.verdicts, [](const Verdict& verdict) { return verdict.passed; }))),
-        median_digits(digits_of(report.overall.relative.median)),
-        worst_digits(digits_of(report.overall.relative.max)),
-        errors(report.overall.absolute) {}
-};
+std::size_t answered(const Report& report) { return report.overall.rows - report.overall.not_finite; }
+std::size_t limits_kept(const Report& report) {
+  const auto kept = std::ranges::count_if(report.verdicts, [](const Verdict& verdict) { return verdict.passed; });
+  return static_cast<std::size_t>(kept);
+}
 
 constexpr std::array kHeadings = {"program", "result", "answered",       "worst error",   "RMS",         "median",
                                   "90 %",    "99 %",   "digits, median", "digits, worst", "limits kept", "time"};
 
 // Without an error, all digits are right; without an answer, there is nothing to say.
 std::vector<std::string> cells_of(const Score& score) {
-  const Line line(score.report);
-  const auto error = [&](double value) { return line.answered == 0 ? "" : text::short_number(value, 2); };
-  const auto digits = [&](double value) -> std::string {
-    if (line.answered == 0) return {};
-    return value == kMostDigits ? "all" : text::short_number(std::floor(10.0 * value) / 10.0);
+  const Report& report = score.report;
+  const Distribution& errors = report.overall.absolute;
+  const bool none = answered(report) == 0;
+  const auto error = [&](double value) { return none ? "" : text::short_number(value, 2); };
+  const auto digits = [&](double relative) -> std::string {
+    const double value = digits_of(relative);
+    return none ? "" : value == kMostDigits ? "all" : text::short_number(std::floor(10.0 * value) / 10.0);
   };
   const auto of = [](std::size_t part, std::size_t whole) {
     return std::to_string(part) + " of " + std::to_string(whole);
   };
   return {score.program,
-          score.report.passed() ? "passed" : "FAILED",
-          of(line.answered, line.cases),
-          error(line.errors.max),
-          error(line.errors.rms),
-          error(line.errors.median),
-          error(line.errors.p90),
-          error(line.errors.p99),
-          digits(line.median_digits),
-          digits(line.worst_digits),
-          of(line.kept, line.limits),
+          report.passed() ? "passed" : "FAILED",
+          of(answered(report), report.truth_rows),
+          error(errors.max),
+          error(errors.rms),
+          error(errors.median),
+          error(errors.p90),
+          error(errors.p99),
+          digits(report.overall.relative.median),
+          digits(report.overall.relative.max),
+          of(limits_kept(report), report.verdicts.size()),
           score.seconds ? text::duration(*score.seconds) : ""};
 }
 
@@ -120,14 +111,13 @@ std::string page_of(const Scoreboard& board) {
     if (verdict.criterion != "finite") limits.push_back(name_of(verdict) + " at most " + text::shortest(verdict.limit));
   }
   std::string text = page::page_head("Scoreboard");
-  text +=
-      "<h1>Scoreboard</h1>\n<p class=\"subtitle\">" + text::counted(board.scores.size(), "program") +
-      " against true values of " + text::html(text::program_version()) + "</p>\n<p class=\"verdict\">" +
-      (passed == board.scores.size()
-           ? std::string(passed == 1 ? "The program keeps" : "All programs keep") + " every limit."
-           : "Every limit is kept by " + std::to_string(passed) + " of " +
+  text += "<h1>Scoreboard</h1>\n<p class=\"subtitle\">" + text::counted(board.scores.size(), "program") +
+          " against true values of " + text::html(text::program_version()) + "</p>\n<p class=\"verdict\">" +
+          (passed == board.scores.size()
+               ? std::string(passed == 1 ? "The program keeps" : "All programs keep") + " every limit."
+               : "Every limit is kept by " + std::to_string(passed) + " of " +
                      text::counted(board.scores.size(), "program") + ".") +
-      "</p>\n";
+          "</p>\n";
   text += page::facts_table(
       {{"truth", "<code>" + text::html(first.truth_file) + "</code>"},
        {"judged", "column <code>" + text::html(first.column) + "</code>, " + text::counted(first.truth_rows, "case")},
@@ -159,17 +149,19 @@ std::string json_text(const Scoreboard& board) {
   json["truth"] = {{"file", first.truth_file}, {"column", first.column}, {"rows", first.truth_rows}};
   json["programs"] = ordered_json::array();
   for (const Score& score : board.scores) {
-    const Line line(score.report);
-    ordered_json one = {{"name", score.program},
-                        {"passed", score.report.passed()},
-                        {"cases", line.cases},
-                        {"answered", line.answered},
-                        {"errors", json_of(line.errors)},
-                        {"digits", {{"median", line.median_digits}, {"worst", line.worst_digits}}},
-                        {"limits", line.limits},
-                        {"limits_kept", line.kept}};
+    const Report& report = score.report;
+    ordered_json one = {
+        {"name", score.program},
+        {"passed", report.passed()},
+        {"cases", report.truth_rows},
+        {"answered", answered(report)},
+        {"errors", json_of(report.overall.absolute)},
+        {"digits",
+         {{"median", digits_of(report.overall.relative.median)}, {"worst", digits_of(report.overall.relative.max)}}},
+        {"limits", report.verdicts.size()},
+        {"limits_kept", limits_kept(report)}};
     if (score.seconds) one["seconds"] = json_number(*score.seconds);
-    one["report"] = json_of(score.report);
+    one["report"] = json_of(report);
     json["programs"].push_back(std::move(one));
   }
   return text::json_document(json) + '\n';

@@ -113,14 +113,17 @@ std::string of_source(const Truth& truth, const std::string& source) {
   return source.empty() ? "" : " of " + word_of(truth.keys[1]) + " '" + source + "'";
 }
 
-GridNames names_of_grid(const Truth& truth) {
+matrix::Order order_of(const Truth& truth) {
   NameList rows;
   for (const TruthRow& row : truth.rows) (void)rows.number_of(row.receiver);
-  GridNames names{rows.take(), {}};
+  matrix::Order order{truth.keys, rows.take(), {}, {}};
   for (const std::string& source : truth.sources) {
-    if (!is_among(truth.further, source)) names.columns.push_back(source);
+    if (!is_among(truth.further, source)) order.columns.push_back(source);
   }
-  return names;
+  for (const std::string& row : order.rows) {
+    if (!truth.areas.empty()) order.areas.push_back(truth.areas.at(row));
+  }
+  return order;
 }
 
 // --- Truths ---
@@ -393,14 +396,12 @@ class CandidateReader {
 
   Table read() {
     std::vector<table::Column> columns = {{"value"}};
+    std::vector<std::size_t> coordinates;
     if (by_ == MatchBy::kReceiver) columns.push_back({"receiver", Type::kText});
     if (!source_.empty()) columns.push_back({"source", Type::kText});
-    const bool has_point = by_ == MatchBy::kPosition, has_normal = has_point && all_there(normal_);
-    for (const char* name : {"x", "y", "z"}) {
-      if (has_point) columns.push_back({name});
-    }
-    for (const char* name : {"nx", "ny", "nz"}) {
-      if (has_normal) columns.push_back({name});
+    for (std::size_t i = 0; by_ == MatchBy::kPosition && i < (all_there(normal_) ? 6 : 3); ++i) {
+      columns.push_back({std::array{"x", "y", "z", "nx", "ny", "nz"}.at(i)});
+      coordinates.push_back(i < 3 ? point_.at(i) : normal_.at(i - 3));
     }
     Table table(csv_.head() ? csv_.head()->kind : std::string(), {}, columns);
     std::string receiver, source;
@@ -409,8 +410,7 @@ class CandidateReader {
       row.emplace_back(input_.number(value_, table::NotFinite::kAccept));
       if (by_ == MatchBy::kReceiver) row.emplace_back(take_receiver(receiver));
       if (!source_.empty()) row.emplace_back(std::string_view(source = input_.text(source_)));
-      for (std::size_t i = 0; has_point && i < 3; ++i) row.emplace_back(input_.number(point_[i]));
-      for (std::size_t i = 0; has_normal && i < 3; ++i) row.emplace_back(input_.number(normal_[i]));
+      for (const std::size_t place : coordinates) row.emplace_back(input_.number(place));
       table.append(row, input_.line());
     }
     csv_.throw_if_any();
@@ -461,7 +461,10 @@ Candidate read_candidate(const std::filesystem::path& path, const Truth& truth, 
   const bool has_two_keys = !truth.keys[1].empty() && truth.keys[1].find(Input::kBetweenKeys) == std::string::npos;
   const bool like_matrix = !truth.kind.empty() && truth.kind != "truth" && has_two_keys;
   if (by == MatchBy::kReceiver && like_matrix) {
-    if (std::optional<Table> matrix = read_other_matrix(path, truth, columns)) return {path.string(), *matrix};
+    matrix::Order order = order_of(truth);
+    if (!columns.receiver.empty()) order.keys[0] = columns.receiver;
+    if (!columns.source.empty()) order.keys[1] = columns.source;
+    if (std::optional<Table> matrix = matrix::read_other(path, order)) return {path.string(), std::move(*matrix)};
   }
   return {path.string(), CandidateReader(path, truth, columns, by).read()};
 }

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -13,18 +12,12 @@
 #include <vector>
 
 #include "exactff/check.h"
+#include "matrix/other_programs.h"
 
 namespace exactff::check {
 
-// A matrix of another program as a table with the columns receiver, source and value; nothing if the file is a list of
-// rows. Matrices without names get those of the truth, in its order. Throws InputError.
-[[nodiscard]] std::optional<table::Table> read_other_matrix(const std::filesystem::path& file, const Truth& truth,
-                                                            const CandidateColumns& columns);
-// The receivers of the truth, and its sources without the further ones, in their order.
-struct GridNames {
-  std::vector<std::string> rows, columns;
-};
-[[nodiscard]] GridNames names_of_grid(const Truth& truth);
+// The receivers of the truth with their areas, and its sources without the further ones, in their order.
+[[nodiscard]] matrix::Order order_of(const Truth& truth);
 
 // Numbers names from 0 in the order of their first use.
 class NameList {

@@ -1,21 +1,25 @@
 // Matrices of view factors as other programs write them: a small function for each form, which gives a table. A matrix
 // with names has the text columns receiver and source. Of one without, the order is all there is: it has the counts row
 // and column, from 0, and perhaps the areas of its rows.
+#include "matrix/other_programs.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <string_view>
 
-#include "check/tables.h"
 #include "files/read_npy.h"
 #include "text/csv_dialect.h"
+#include "text/nearest_names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_file.h"
 #include "text/text_lines.h"
 
-namespace exactff::check {
+namespace exactff::matrix {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,39 +111,38 @@ struct Grid {
 };
 
 // Areas of six digits are off by 5e-6 of themselves at most.
-void require_same_areas(const fs::path& file, const Grid& grid, const Truth& truth, const GridNames& names) {
+void require_same_areas(const fs::path& file, const Grid& grid, const Order& order) {
   constexpr double kSixDigits = 1e-5;
   text::ProblemList problems;
-  for (std::size_t i = 0; i < grid.areas.size() && !truth.areas.empty(); ++i) {
-    const double ours = truth.areas.at(names.rows[i]);
+  for (std::size_t i = 0; i < grid.areas.size() && !order.areas.empty(); ++i) {
+    const double ours = order.areas[i];
     if (std::abs(grid.areas[i] - ours) <= kSixDigits * ours) continue;
     problems.add({file.string(), grid.line_of_areas,
                   "surface " + std::to_string(i + 1) + " has the area " + text::shortest(grid.areas[i]) + ", and " +
-                      text::in_quotes(names.rows[i]) + " has " + text::short_number(ours, 6),
+                      text::in_quotes(order.rows[i]) + " has " + text::short_number(ours, 6),
                   "the matrices are of other patches, in another order or in another unit",
                   "compute the truth for the same scene, and name its patches by --from and --to in this order"});
   }
   problems.throw_if_any();
 }
 
-// With the names of the truth, in its order.
-Table named_like(const Truth& truth, const fs::path& file, const Grid& grid) {
-  const GridNames names = names_of_grid(truth);
-  if (grid.rows != names.rows.size() || grid.columns != names.columns.size()) {
+// With the names of the other matrix, in its order.
+Table named_like(const Order& order, const fs::path& file, const Grid& grid) {
+  if (grid.rows != order.rows.size() || grid.columns != order.columns.size()) {
     const auto size = [](std::size_t rows, std::size_t columns) {
       return std::to_string(rows) + " x " + std::to_string(columns);
     };
     text::refuse(file,
                  "is " + grid.holds + " of " + size(grid.rows, grid.columns) + ", and the truth is " +
-                     size(names.rows.size(), names.columns.size()),
+                     size(order.rows.size(), order.columns.size()),
                  "without names, entries are compared in their order",
-                 "compute the truth for the same patches in the same order, or write a CSV with " + truth.keys[0] +
-                     ',' + truth.keys[1] + ",value");
+                 "compute the truth for the same patches in the same order, or write a CSV with " + order.keys[0] +
+                     ',' + order.keys[1] + ",value");
   }
-  require_same_areas(file, grid, truth, names);
+  require_same_areas(file, grid, order);
   Table table = with_names();
   for (std::size_t k = 0; k < grid.values.size(); ++k) {
-    add(table, names.rows[k / grid.columns], names.columns[k % grid.columns], grid.values[k],
+    add(table, order.rows[k / grid.columns], order.columns[k % grid.columns], grid.values[k],
         grid.lines.empty() ? 0 : grid.lines[k]);
   }
   return table;
@@ -179,7 +182,7 @@ Grid read_npy_grid(const fs::path& file) {
 
 // The names of columns in the first line, with a corner before them or without, and in each further line a name and its
 // numbers.
-Table read_named(const fs::path& file) {
+Table read_with_names(const fs::path& file) {
   Table table = with_names();
   Fields all(file);
   std::optional<std::vector<std::string>> head;
@@ -265,12 +268,6 @@ Grid read_view3d(const fs::path& file) {
                "write it again");
 }
 
-std::string in_lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return lower;
-}
-
 // Input of EnergyPlus: OBJECT, ZONE, then FROM, TO, FACTOR for each pair, up to a semicolon; comments begin with an
 // exclamation mark. Other objects are skipped.
 Table read_energyplus(const fs::path& file) {
@@ -286,7 +283,7 @@ Table read_energyplus(const fs::path& file) {
         continue;
       }
       fields.back() = text::trimmed(fields.back());
-      const bool ours = in_lower_case(fields.front()) == kEnergyPlusObject;
+      const bool ours = text::in_lower_case(fields.front()) == kEnergyPlusObject;
       if (ours && fields.size() > 2 && fields.size() % 3 == 2) {
         add(table, fields[2], fields[3], all.number(fields[4], line.number), line.number);
         fields.resize(2);
@@ -393,14 +390,14 @@ std::string first_bytes(const fs::path& file, std::size_t count) {
 
 }  // namespace
 
-std::optional<Table> read_other_matrix(const fs::path& file, const Truth& truth, const CandidateColumns& columns) {
+std::optional<Table> read_other(const fs::path& file, const Order& order) {
   std::error_code ignored;
   if (fs::is_other(file, ignored)) {
     text::refuse(file, "is no regular file", "a matrix is recognised by its content, and then read",
                  "write it to a file first");
   }
   if (!table::kind_of(file).empty()) return std::nullopt;
-  const auto in_order = [&](const Grid& grid) { return named_like(truth, file, grid); };
+  const auto in_order = [&](const Grid& grid) { return named_like(order, file, grid); };
   const std::string start = first_bytes(file, 1 << 16);
   if (file.extension() == ".vwf") return in_order(read_calculix(file));
   if (files::is_npy(start)) return in_order(read_npy_grid(file));
@@ -408,7 +405,7 @@ std::optional<Table> read_other_matrix(const fs::path& file, const Truth& truth,
     text::refuse(file, "is a zip archive, as .npz files are", "an archive may hold several arrays",
                  "give a file that exactff wrote, or one .npy array");
   }
-  if (in_lower_case(start).find(kEnergyPlusObject) != std::string::npos) return read_energyplus(file);
+  if (text::in_lower_case(start).find(kEnergyPlusObject) != std::string::npos) return read_energyplus(file);
   if (start.find("FoamFile") != std::string::npos) return in_order(read_openfoam(file));
   text::CsvLines lines(file, "a matrix");
   std::string_view line;
@@ -421,11 +418,9 @@ std::optional<Table> read_other_matrix(const fs::path& file, const Truth& truth,
   all.recognise(line);
   (void)all.split(line, fields);
   if (all.all_are_numbers(fields)) return in_order(read_numbers(file));
-  const auto has = [&](const std::string& given, const std::string& usual) {
-    return std::ranges::find(fields, given.empty() ? usual : given) != fields.end();
-  };
-  if (has(columns.receiver, truth.keys[0]) && has(columns.source, truth.keys[1])) return std::nullopt;
-  return read_named(file);
+  const auto has = [&](const std::string& key) { return std::ranges::find(fields, key) != fields.end(); };
+  if (std::ranges::all_of(order.keys, has)) return std::nullopt;
+  return read_with_names(file);
 }
 
-}  // namespace exactff::check
+}  // namespace exactff::matrix
