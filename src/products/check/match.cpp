@@ -176,7 +176,7 @@ class Matcher {
   }
 
   void match_receivers() {
-    RowIndex rows;
+    RowIndex rows(truth_.rows.size());
     for (std::uint32_t i = 0; i < truth_.rows.size(); ++i)
       rows.try_emplace({truth_.rows[i].receiver, truth_.rows[i].source}, i);
     for (std::uint32_t i = 0; i < table_.rows(); ++i) {

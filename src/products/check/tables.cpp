@@ -64,10 +64,12 @@ class Input {
   }
 
   // Of the present row; empty without a column.
-  [[nodiscard]] std::string text(std::size_t column) const {
-    return column == kNoColumn ? std::string() : csv_->field(column);
+  [[nodiscard]] const std::string& text(std::size_t column) const {
+    static const std::string kNone;
+    return column == kNoColumn ? kNone : csv_->field(column);
   }
   [[nodiscard]] std::string text(const std::vector<std::size_t>& columns) const {
+    if (columns.size() == 1) return csv_->field(columns.front());
     std::string text;
     for (const std::size_t column : columns)
       text += std::string(text.empty() ? "" : kBetweenKeys) + csv_->field(column);
@@ -304,7 +306,7 @@ class TruthReader {
   }
 
   void complain_about_repetitions() {
-    RowIndex rows;
+    RowIndex rows(truth_.rows.size());
     for (std::uint32_t i = 0; i < truth_.rows.size(); ++i) {
       const TruthRow& row = truth_.rows[i];
       const auto [first, is_new] = rows.try_emplace({row.receiver, row.source}, i);
