@@ -1,16 +1,15 @@
-// Accuracy checks: compares the values of any other program, method or function with certified true values (a truth
-// file, truth.h).
+// Accuracy checks: compares the values of any other program, method or function with true ones.
 //
-//   const check::Truth truth = check::read_truth("truth.csv");
-//   const check::Candidate mine = check::read_candidate("mine.csv");
-//   const check::Report report = check::judge(truth, check::match(truth, mine), {.max_abs = 1e-6});
+//   const check::Report report = check::compare("truth.csv", "mine.csv", {.criteria = {.max_abs = 1e-6}});
 //   report.passed(); report.worst; report.verdicts;
+//   check::scoreboard("truth.csv", candidates, options);  // several programs, a row for each
 //
-// The error of a value c is c - F*, where F* is the truth: the true form factor, correctly rounded. If a row of the
-// truth is not certified, F* is the point of its enclosure nearest to c, so that no candidate is blamed for what is not
-// known. The relative error is relative to F*; for F* = 0 it is 0 if c = 0 and infinite otherwise. The error in
-// radiosity is the error times the largest rho_r B_s over the colour channels. This is the quantity that eps_B bounds,
-// row by row.
+// A truth is any table that exactff wrote (table.h): a truth file, a matrix, radiosities. Its key columns identify the
+// rows, and one column of numbers is judged. The error of a value c is c - F*, where F* is the true value, correctly
+// rounded. If a row of the truth is not certified, F* is the point of its enclosure nearest to c, so that no candidate
+// is blamed for what is not known. The relative error is relative to F*; for F* = 0 it is 0 if c = 0 and infinite
+// otherwise. The error in radiosity is the error times the largest rho_r B_s over the colour channels. This is the
+// quantity that eps_B bounds, row by row.
 #pragma once
 
 #include <array>
@@ -21,12 +20,14 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "exactff/error.h"
 #include "exactff/exact.h"
-#include "exactff/exr.h"
 #include "exactff/geometry.h"
+#include "exactff/table.h"
 #include "exactff/view_factors.h"
 
 namespace exactff::check {
@@ -34,8 +35,8 @@ namespace exactff::check {
 // --- Truth ---------------------------------------------------------------------------------------------------------
 
 struct TruthRow {
-  std::string receiver;
-  std::uint32_t source = 0;  // index into Truth::sources
+  std::string receiver;      // the first key
+  std::uint32_t source = 0;  // the second key: index into Truth::sources
   std::uint32_t on = 0;      // index into Truth::faces
   std::uint32_t line = 0;    // of the file
   Status status = Status::kCertified;
@@ -45,70 +46,73 @@ struct TruthRow {
   double lower = 0.0;
   double upper = 0.0;
   std::optional<double> largest_rho_b;  // over the colour channels; empty if the file does not give it
-  std::optional<Claim> claim;           // of an entry of a matrix
-  Way way = Way::kCells;                // the same
-  bool accurate = true;                 // of an entry: within the accuracy that was asked for
+  std::optional<Claim> claim;           // of a factor or a radiosity
+  bool by_points = false;               // of a factor: estimated by points
+  bool accurate = true;                 // of a factor: within the accuracy that was asked for
 };
 
 struct Truth {
   std::string file;
-  std::string column;                // the column that `value` was read from
-  std::vector<std::string> sources;  // in order of first appearance; one empty name if the file has no such column
+  std::string kind;    // "truth", "matrix", ...: of the table; "image"; empty for other files
+  std::string column;  // the column that `value` was read from
+  std::array<std::string, 2> keys = {"receiver", "source"};  // "from" and "to", "patch" and "channel"
+  std::vector<std::string> sources;  // in order of first appearance; one empty name if there is no second key
+  std::vector<std::string> further;  // sources that count only for candidates that have them, such as "(back)"
   std::vector<std::string> faces;    // faces that receivers lie on; the first name is empty and stands for none
+  std::unordered_map<std::string, double> areas;  // of the receivers, if the file has them
   bool has_points = false;
   bool has_normals = false;
-  bool is_image = false;   // receivers are pixels, sources are channels
-  bool is_matrix = false;  // receivers are rows, sources are columns
   std::vector<TruthRow> rows;
 
   [[nodiscard]] const std::string& source_of(const TruthRow& row) const { return sources[row.source]; }
   [[nodiscard]] const std::string& face_of(const TruthRow& row) const { return faces[row.on]; }
 };
 
-// Reads a file of `exactff truth`, the exact.csv of `exactff compare`, or any CSV with the columns receiver (or id) and
-// exact. Optional columns: source, on, x,y,z, nx,ny,nz, lower, upper, status, largest_rho_b and radiosity_r, _g, _b.
-// `column` names the column with the true values if it is not `exact`, such as unoccluded or radiosity_g. Where a
-// derivative (dF_dx, dF_dy, dF_dz) is empty, at a kink, the row is not certified and its bounds are the largest
-// doubles, so that no value has an error. A total (total_r, _g, _b) is one value for all sources: only the first row of
-// each receiver counts. Throws one InputError with file:line for every problem, including rows that occur twice.
-[[nodiscard]] Truth read_truth(const std::filesystem::path& path, const std::string& column = "exact");
+// Reads any table that exactff wrote, in any of its formats; or a CSV file with the columns receiver (or id) and exact,
+// such as exact.csv of `exactff compare`. `column` names the column with the true values; empty stands for exact,
+// factor or radiosity. Of a table, the key columns identify the rows; further keys than two are joined with the second.
+// The bounds of NAME are lower and upper for these three, else NAME_lower and NAME_upper (total_lower_r for total_r);
+// NAME_status or status, and claim, say how a row is judged. Other files may have source, on, x,y,z, nx,ny,nz, lower,
+// upper, status, largest_rho_b and radiosity_r, _g, _b. A value that is not known, such as a derivative (dF_dx) at a
+// kink, is not certified and its bounds are the largest doubles, so that no value has an error. A total (total_r, _g,
+// _b) is one value for all sources: only the first row of each receiver counts. Throws one InputError with file:line
+// for every problem, including rows that occur twice.
+[[nodiscard]] Truth read_truth(const std::filesystem::path& path, const std::string& column = {});
 
 // --- Candidate -----------------------------------------------------------------------------------------------------
 
 enum class MatchBy {
-  kReceiver,  // by the id of the receiver
-  kPosition,  // by its coordinates
+  kReceiver,  // by the keys
+  kPosition,  // by the coordinates of the receiver
 };
 
 // Column names. An empty name stands for the default.
 struct CandidateColumns {
-  std::string value = {};     // default: the first of value, approximate and exact that exists
-  std::string receiver = {};  // default: receiver or id
-  std::string source = {};    // default: source, which may be absent if the truth has only one source
+  // Default: the first of value, approximate and exact that exists; factor or radiosity if that is the truth's; of a
+  // table that exactff wrote, the truth's column.
+  std::string value = {};
+  std::string receiver = {};  // default: the first key of the truth, or id
+  std::string source = {};    // default: the second key, which may be absent if it has only one value in the truth
   std::array<std::string, 3> position = {"x", "y", "z"};
   std::array<std::string, 3> normal = {"nx", "ny", "nz"};
+
+  friend bool operator==(const CandidateColumns&, const CandidateColumns&) = default;
 };
 
-struct CandidateRow {
-  std::string receiver;
-  std::uint32_t source = 0;  // index into Candidate::sources
-  std::uint32_t line = 0;
-  Vec3 point;
-  Vec3 normal;
-  double value = 0.0;  // may be infinite or NaN: that is a failure of the candidate, not of the file
-};
-
+// The values of another program: text columns receiver and source, a number column value, which may be infinite or NaN
+// (that is a failure of the candidate, not of the file), and x, y, z, nx, ny, nz for matching by position.
 struct Candidate {
   std::string file;
-  bool has_sources = false;
-  bool has_normals = false;
-  std::vector<std::string> sources;
-  std::vector<CandidateRow> rows;
+  table::Table table;
 };
 
-// Reads the columns that matching `by` needs. Throws one InputError with file:line for every problem.
-[[nodiscard]] Candidate read_candidate(const std::filesystem::path& path, const CandidateColumns& columns = {},
-                                       MatchBy by = MatchBy::kReceiver);
+// Reads the columns that matching `by` needs, of any table of exactff or any CSV file. If the truth is a matrix, or a
+// table like it, the file may also be a matrix, recognised by its content: a CSV file with names above and beside it;
+// the UserViewFactors object of EnergyPlus; or, in the order of the truth, whose size (and areas, if it has areas) they
+// must have, View3D's output, numbers only (CSV, or blanks between), a NumPy array, OpenFOAM's file F (with
+// globalFaceFaces beside it), CalculiX's file .vwf. Throws one InputError with file:line for every problem.
+[[nodiscard]] Candidate read_candidate(const std::filesystem::path& path, const Truth& truth = {},
+                                       const CandidateColumns& columns = {}, MatchBy by = MatchBy::kReceiver);
 
 // --- Matching ------------------------------------------------------------------------------------------------------
 
@@ -119,6 +123,8 @@ struct MatchOptions {
   double tolerance = 0.0;
   double normal_tolerance = 1e-3;
   bool partial = false;  // rows of the truth may be missing
+
+  friend bool operator==(const MatchOptions&, const MatchOptions&) = default;
 };
 
 // A value for one row of the truth.
@@ -186,6 +192,7 @@ struct Statistics {
 struct RowError {
   std::string receiver;
   std::string source;
+  std::string name;  // "receiver '7', source 'light'"
   std::uint32_t truth_line = 0;
   std::uint32_t line = 0;
   Status status = Status::kCertified;
@@ -195,7 +202,7 @@ struct RowError {
   double relative = 0.0;
   std::optional<double> radiosity;
   double lower = 0.0, upper = 0.0;  // of the truth
-  std::optional<Claim> claim;       // of an entry of a matrix
+  std::optional<Claim> claim;       // of a factor or a radiosity
 };
 
 struct Verdict {
@@ -208,11 +215,32 @@ struct Verdict {
   std::optional<RowError> worst;  // set if a single row decides
 };
 
+// A statistic that is better than the baseline by more than the slack.
+struct Improvement {
+  std::string criterion;
+  std::string source;
+  double recorded = 0.0;
+  double now = 0.0;
+};
+
+// What view factors must keep to, whatever the truth is: how far the candidate's entries are from it.
+struct MatrixFacts {
+  struct Largest {
+    double by = 0.0;
+    std::string from, to;
+  };
+  std::size_t negative = 0, above_one = 0;  // entries
+  Largest least, largest;                   // the entries themselves
+  std::optional<Largest> row_sum;      // the distance of a row's sum from the sum of the truth's bounds; of whole rows
+  std::optional<Largest> reciprocity;  // |A_i F_ij - A_j F_ji| / min(A_i, A_j), if rows and columns are the same
+};
+
 struct Report {
   std::string truth_file;
-  std::string candidate_file;  // empty for values that come from no file
-  std::string column;          // of the truth
-  std::string identity;        // 16 hexadecimal digits that identify the rows judged and their truths, in any order
+  std::string candidate_file;       // empty for values that come from no file
+  std::string column;               // of the truth
+  std::array<std::string, 2> keys;  // of the truth
+  std::string identity;  // 16 hexadecimal digits that identify the rows judged and their truths, in any order
   Criteria criteria;
   std::size_t truth_rows = 0;
   std::size_t not_certified = 0;                // rows judged by their enclosures
@@ -225,6 +253,8 @@ struct Report {
   Measure worst_by = Measure::kAbsolute;  // the measure of the first limit that is exceeded
   std::vector<RowError> worst;            // worst first; values that are not finite come before all others
   std::vector<double> magnitudes;         // magnitudes of the errors, ascending
+  std::optional<MatrixFacts> matrix;      // if matrices were compared
+  std::vector<Improvement> improvements;  // over the baseline, if there is one
 
   [[nodiscard]] bool passed() const;
 };
@@ -236,6 +266,44 @@ struct Report {
 
 // As above, with one value for each row of the truth, in its order.
 [[nodiscard]] Report judge(const Truth& truth, std::span<const double> values, const Criteria& criteria);
+
+// --- Files ---------------------------------------------------------------------------------------------------------
+
+struct Options {
+  std::string truth_column = {};  // of an image, its layer or channel
+  CandidateColumns columns = {};
+  MatchOptions match = {};
+  Criteria criteria = {};
+};
+
+// Reads, matches and judges. Two images, OpenEXR files or NumPy arrays, are compared pixel by pixel: pixels are
+// receivers, channels are sources. Throws InputError; of images also Cancelled.
+[[nodiscard]] Report compare(const std::filesystem::path& truth, const std::filesystem::path& candidate,
+                             const Options& options = {});
+
+// A program in a scoreboard.
+struct Score {
+  std::string program;            // the name of its file without the extension; all of it if two are equal
+  std::optional<double> seconds;  // that it took; whoever measured them sets them
+  Report report;
+};
+struct Scoreboard {
+  std::vector<Score> scores;  // in the order of the candidates
+};
+
+// The programs' names of these files.
+[[nodiscard]] std::vector<std::string> program_names(std::span<const std::filesystem::path> candidates);
+// The same truth and the same limits for all of them; at least one.
+[[nodiscard]] Scoreboard scoreboard(const std::filesystem::path& truth,
+                                    std::span<const std::filesystem::path> candidates, const Options& options = {});
+// Decimal digits that are right, -log10 of a relative error: 0 from 1 on, kMostDigits if there is no error.
+inline constexpr double kMostDigits = 17.0;
+[[nodiscard]] double digits_of(double relative_error);
+// A table in Markdown: a line for each program.
+[[nodiscard]] std::string markdown(const Scoreboard& board);
+// Writes index.html, scoreboard.json and junit.xml (a suite for each program). The folder appears complete or not at
+// all, and replaces an earlier scoreboard. Throws InputError if it cannot be written.
+void write(const Scoreboard& board, const std::filesystem::path& folder);
 
 // Lines of text: every limit that is exceeded, then the worst rows.
 [[nodiscard]] std::string failure_message(const Report& report);

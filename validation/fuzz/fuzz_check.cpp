@@ -8,11 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "check/baseline.h"
-#include "check/github.h"
-#include "check/json.h"
-#include "check/junit.h"
-#include "check/matrices.h"
+#include "check/report.h"
 #include "exactff/check.h"
 #include "fuzz/complaints.h"
 #include "support/program.h"
@@ -27,12 +23,12 @@ void check_order(const check::Distribution& d) {
   if (d.median < 0.0 || !(d.rms <= d.max * (1.0 + 1e-12))) fail("a figure that no errors have");
 }
 
-void check_report(const check::Report& report, const std::optional<check::MatrixFacts>& matrix = {}) {
+void check_report(const check::Report& report) {
   check_order(report.overall.absolute);
   check_order(report.overall.relative);
   for (const check::Statistics& statistics : report.by_source) check_order(statistics.absolute);
-  if (!nlohmann::json::accept(check::json_text(report, matrix))) fail("not JSON");
-  for (const char c : check::junit_xml(report, matrix)) {
+  if (!nlohmann::json::accept(check::json_text(report))) fail("not JSON");
+  for (const char c : check::junit_xml(report)) {
     if (static_cast<unsigned char>(c) < 0x20 && c != '\n') fail("a control character in XML");
   }
   (void)check::github_annotations(report);
@@ -40,9 +36,8 @@ void check_report(const check::Report& report, const std::optional<check::Matrix
 }
 
 void check_match(const check::Truth& truth, const std::filesystem::path& candidate, check::MatchBy by) {
-  const check::CandidateColumns columns;
   const check::MatchOptions options{.by = by, .tolerance = 0.125, .partial = true};
-  const auto measured = check::match(truth, check::read_candidate(candidate, columns, by), options);
+  const auto measured = check::match(truth, check::read_candidate(candidate, truth, {}, by), options);
   check_report(check::judge(truth, measured, {.max_abs = 1e-3, .quantiles = {{0.5, 1e-3}}, .per_source = true}));
 }
 
@@ -57,18 +52,18 @@ void attempt(const Work& work) {
 }
 
 constexpr const char* kMatrix =
-    "from,to,factor,lower,upper,claim,accurate,area_from,area_to,cells,event_cells\n"
-    "a,a,0,0,0,zero,yes,1,1,0,0\na,b,0.5,0.4,0.6,statistical,no,1,2,9,0\na,(open),0.5,0.5,0.5,topology-proved,yes,1,,9,"
-    "0\n"
-    "b,a,0.25,0.2,0.3,statistical,no,2,1,9,0\nb,b,0,0,0,zero,yes,2,2,0,0\nb,(open),0.7,0.7,0.7,topology-proved,yes,2,,"
-    "9,0\n";
+    R"x(# {"exactff":"0","table":"matrix","further":["(open)"],"columns":[{"name":"from","type":"text","strength":"given","key":true},)x"
+    R"x({"name":"to","type":"text","strength":"given","key":true},{"name":"factor","type":"number","strength":"stated"}]})x"
+    "\nfrom,to,factor,lower,upper,claim,accurate,area_from\n"
+    "a,a,0,0,0,zero,yes,1\na,b,0.5,0.4,0.6,estimated,no,1\na,(open),0.5,0.5,0.5,estimated,yes,1\n"
+    "b,a,0.25,0.2,0.3,estimated,no,2\nb,b,0,0,0,zero,yes,2\nb,(open),0.7,0.7,0.7,estimated,yes,2\n";
 
 void check_matrices(const std::filesystem::path& truth, const std::filesystem::path& candidate) {
   attempt([&] {
-    const check::Matrices both = check::read_matrices(truth, candidate, {}, true);
-    const check::Report report = check::judge(both.truth, both.values, {.max_abs = 1e-3, .per_source = true});
-    check_report(report, both.facts);
-    if (report.overall.rows > both.truth.rows.size()) fail("more values than entries");
+    const check::Options options{.match = {.partial = true}, .criteria = {.max_abs = 1e-3, .per_source = true}};
+    const check::Report report = check::compare(truth, candidate, options);
+    check_report(report);
+    if (report.overall.rows > report.truth_rows) fail("more values than entries");
   });
 }
 
@@ -79,7 +74,7 @@ void check_files(const std::string& truth_text, const std::string& candidate_tex
   static const auto matrix_file = directory.write("matrix.csv", kMatrix);
   check_matrices(matrix_file, candidate_file);
   check_matrices(truth_file, candidate_file);
-  attempt([&] { (void)check::read_candidate(candidate_file, {}, check::MatchBy::kPosition); });
+  attempt([&] { (void)check::read_candidate(candidate_file, {}, {}, check::MatchBy::kPosition); });
   attempt([&] {
     const check::Truth truth = check::read_truth(truth_file);
     for (const check::TruthRow& row : truth.rows) {

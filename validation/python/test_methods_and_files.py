@@ -97,6 +97,22 @@ def test_values_are_checked_with_a_truth_file(tmp_path):
         exactff.check(file, TRUE.value[:29])
 
 
+def test_matrices_and_scoreboards(tmp_path):
+    program("matrix", CORNELL, "-o", tmp_path / "m.csv", "--energyplus", tmp_path / "m.idf", "--force")
+    assert exactff.check(tmp_path / "m.csv", tmp_path / "m.idf", max_abs=0.0)
+    for name, off in (("right", 0.0), ("wrong", 0.25)):
+        exactff.truth(ROOM, GRID, tmp_path / "t.csv", "light", existing="replace")
+        (tmp_path / f"{name}.csv").write_text(
+            "receiver,value\n" + "".join(f"{i},{v + off!r}\n" for i, v in zip(GRID.ids, TRUE.value[:, 0].tolist())))
+    files = [tmp_path / "right.csv", tmp_path / "wrong.csv"]
+    board = exactff.scoreboard(tmp_path / "t.csv", files, max_abs=0.1, seconds={"wrong": 2.0}, folder=tmp_path / "board")
+    assert not board and [bool(report) for report in board.reports.values()] == [True, False]
+    assert "| right   | passed |" in board.markdown and "2 s |" in board.markdown and "1 of 2 passed" in repr(board)
+    assert sorted(file.name for file in (tmp_path / "board").iterdir()) == ["index.html", "junit.xml", "scoreboard.json"]
+    with pytest.raises(exactff.InputError, match="seconds names 'other'"):
+        exactff.scoreboard(tmp_path / "t.csv", files, seconds={"other": 1.0})
+
+
 def test_reports_name_receivers():
     wrong = TRUE.value.copy()
     wrong[7, 0] += 0.25

@@ -53,6 +53,27 @@ double root_mean_square(std::span<const double> values, double largest) {
   return largest * std::sqrt(sum / static_cast<double>(values.size()));
 }
 
+double nearest_rank(const std::vector<double>& ascending, double share) {
+  if (ascending.empty()) return 0.0;
+  const auto n = static_cast<double>(ascending.size());
+  double rank = std::floor(share * n);
+  // Compares k / n with the share as written: both are rounded from the same fraction.
+  while (rank < n && rank / n < share) ++rank;
+  return ascending[static_cast<std::size_t>(std::clamp(rank, 1.0, n)) - 1];
+}
+
+Distribution distribution(std::vector<double> magnitudes) {
+  if (magnitudes.empty()) return {};
+  std::sort(magnitudes.begin(), magnitudes.end());
+  const double largest = magnitudes.back();
+  return {nearest_rank(magnitudes, 0.5),
+          nearest_rank(magnitudes, 0.9),
+          nearest_rank(magnitudes, 0.99),
+          nearest_rank(magnitudes, 0.999),
+          largest,
+          std::isinf(largest) ? largest : root_mean_square(magnitudes, largest)};
+}
+
 double mean_half_width(std::span<const double> values) {
   if (values.size() < 2) return 0.0;
   const double middle = mean(values), n = static_cast<double>(values.size());

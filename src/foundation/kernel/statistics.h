@@ -17,6 +17,16 @@ namespace exactff::kernel {
 [[nodiscard]] double mean(std::span<const double> values);
 // Squares values / largest, so that nothing underflows or overflows. `largest`: of their magnitudes; 0 gives 0.
 [[nodiscard]] double root_mean_square(std::span<const double> values, double largest);
+
+// The smallest of these values that at least the share of them does not exceed; 0 if there are none.
+[[nodiscard]] double nearest_rank(const std::vector<double>& ascending, double share);
+// Of the magnitudes of errors: the only place that says what RMS and quantiles of errors are. A quantile is by nearest
+// rank. All are 0 for an empty list; with an infinite magnitude, the largest and the RMS are infinite.
+struct Distribution {
+  double median = 0.0, p90 = 0.0, p99 = 0.0, p999 = 0.0, max = 0.0, rms = 0.0;
+};
+[[nodiscard]] Distribution distribution(std::vector<double> magnitudes);
+
 // Half the width of the 95 % confidence interval of the mean, by Student's t; 0 for fewer than two values.
 [[nodiscard]] double mean_half_width(std::span<const double> values);
 

@@ -23,16 +23,21 @@ fs::path normalised(const fs::path& folder) {
   return path.has_filename() ? path : path.parent_path();
 }
 
-bool begins_like_ours(const fs::path& file) {
+// A table or a scoreboard. The first lines say which program wrote it.
+bool says_it_is_ours(const fs::path& file) {
   std::ifstream in(file);
   std::string line;
-  return std::getline(in, line) && line.starts_with("# exactff ");
+  if (file.filename() == kScoreFile) {
+    return std::getline(in, line) && std::getline(in, line) && line.starts_with("  \"program\": \"exactff ");
+  }
+  return file.extension() == ".csv" && std::getline(in, line) &&
+         (line.starts_with("# exactff ") || line.starts_with("# {\"exactff\""));
 }
 
-// The report, a lock, or a table. The first line of a table says which program wrote it.
-bool is_our_file(const fs::path& path) {
-  return path.filename() == kReportFile || path.filename() == files::kLockFile ||
-         (path.extension() == ".csv" && begins_like_ours(path));
+// Pages, a lock, and what goes with pages.
+bool may_be_ours(const fs::path& path) {
+  const fs::path name = path.filename();
+  return name == kReportFile || name == files::kLockFile || name == "index.html" || name == "junit.xml";
 }
 
 void require_replaceable(const fs::path& folder) {
@@ -41,10 +46,9 @@ void require_replaceable(const fs::path& folder) {
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     empty = false;
     std::error_code ignored;
-    if (entry->is_regular_file(ignored) && is_our_file(entry->path())) {
-      any_table = any_table || entry->path().extension() == ".csv";
-      continue;
-    }
+    const bool ours = entry->is_regular_file(ignored) && says_it_is_ours(entry->path());
+    any_table = any_table || ours;
+    if (ours || (entry->is_regular_file(ignored) && may_be_ours(entry->path()))) continue;
     refuse(folder, "the folder holds '" + entry->path().filename().string() + "', which exactff did not write",
            "the whole folder would be replaced", "name a new folder");
   }

@@ -10,6 +10,7 @@
 namespace exactff::page {
 
 inline constexpr const char* kReportFile = "report.html";
+inline constexpr const char* kScoreFile = "scoreboard.json";  // beside index.html and junit.xml
 
 // Throws InputError unless `folder` can be written and replaced: it does not exist, is empty, or contains only files of
 // an earlier result.

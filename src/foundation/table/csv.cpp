@@ -62,6 +62,11 @@ CsvReader::CsvReader(const std::filesystem::path& path, const std::string& purpo
   read_names();
 }
 
+CsvReader::CsvReader(std::istream& in, std::string file, const std::string& purpose)
+    : lines_(in, std::move(file), purpose) {
+  read_names();
+}
+
 void CsvReader::read_names() {
   for (std::string_view line; lines_.next(line);) {
     if (!text::is_csv_comment(line)) {

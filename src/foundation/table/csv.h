@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <initializer_list>
+#include <istream>
 #include <optional>
 #include <span>
 #include <string>
@@ -69,6 +70,8 @@ class CsvReader {
   // Reads the file up to and including the column names. `purpose` completes "give ...". Refuses a file of exactff
   // whose head is no JSON: it is of an older version.
   CsvReader(const std::filesystem::path& path, const std::string& purpose);
+  // The same from an open stream, called `file` in messages.
+  CsvReader(std::istream& in, std::string file, const std::string& purpose);
 
   [[nodiscard]] const std::string& file() const { return lines_.file(); }
   [[nodiscard]] std::size_t line() const { return lines_.number(); }

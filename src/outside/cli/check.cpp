@@ -1,40 +1,29 @@
-// exactff check: compares the values of another program with a truth file.
+// exactff check: compares the values of other programs with a truth file.
 #include "exactff/check.h"
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
-#include "check/baseline.h"
-#include "check/error_image.h"
-#include "check/github.h"
-#include "check/histogram.h"
 #include "check/images.h"
-#include "check/json.h"
-#include "check/junit.h"
-#include "check/matrices.h"
-#include "check/words.h"
+#include "check/report.h"
 #include "cli/check_print.h"
 #include "cli/command.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
-#include "exactff/matrix.h"
 #include "exactff/render.h"
 #include "exr/other_image.h"
-#include "files/file.h"
 #include "flags/file_options.h"
 #include "text/csv_lines.h"
 #include "text/escape.h"
+#include "text/names.h"
 #include "text/number_text.h"
-#include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
 
@@ -56,11 +45,15 @@ constexpr const char* kCheckFooter =
     "Two images, .exr or .npy arrays (height, width, 3), are compared pixel by pixel, in each channel: pixels are\n"
     "receivers, channels are sources. A pixel of the truth that is not a finite number does not count. --error-image\n"
     "shows where the errors are.\n"
-    "A file of `exactff matrix -o` is compared entry by entry with another program's matrix: CSV with from,to,value, "
-    "a\n"
-    "table with names, View3D's output, or numbers only or .npy in the same order. Rows are receivers, columns are\n"
-    "sources. The error of an entry is its distance from [lower, upper]. Negative entries, entries above 1, sums of\n"
-    "rows and reciprocity are printed.\n"
+    "Any table that exactff wrote can be the truth: of `truth`, `matrix` or `radiosity`, as CSV, .npz or .jsonl. Its\n"
+    "key columns match rows. Values with bounds are judged by their distance from [lower, upper].\n"
+    "A file of `exactff matrix -o` is compared entry by entry with another program's matrix: a table with "
+    "from,to,value\n"
+    "or with names above and beside it, UserViewFactors of EnergyPlus, or, in the same order, View3D's output, "
+    "OpenFOAM's\n"
+    "F, CalculiX' .vwf, numbers only or .npy. Negative entries, entries above 1, sums of rows and reciprocity are "
+    "printed.\n"
+    "Several candidates are a scoreboard, printed as a table in Markdown; -o DIR writes a page, JSON and JUnit XML.\n"
     "Exit codes: 0 passed, 1 failed, 2 bad input.\n"
     "\n"
     "Examples:\n"
@@ -68,11 +61,14 @@ constexpr const char* kCheckFooter =
     "  exactff check truth.csv mine.csv --match position --tolerance 1e-6 --value-column ff\n"
     "  exactff check truth.csv mine.csv --baseline accuracy.json\n"
     "  exactff check truth.exr mine.exr --rms 1e-3 --error-image errors.png\n"
-    "  exactff check factors.csv view3d.out --max-abs 1e-5";
+    "  exactff check factors.csv view3d.out --max-abs 1e-5\n"
+    "  exactff check truth.csv ours.csv theirs.csv --max-abs 1e-4 --time ours=3.2 --time theirs=0.4 -o scoreboard";
 
 struct CheckArguments {
-  std::string truth, candidate;
-  std::string truth_column = "exact";
+  std::string truth;
+  std::vector<std::string> candidates;
+  std::string truth_column, folder;
+  std::vector<std::string> times;
   check::CandidateColumns columns;
   std::string position_columns = "x,y,z", normal_columns = "nx,ny,nz";
   std::string match = "receiver", tolerance = "0", normal_tolerance = "0.001";
@@ -86,7 +82,7 @@ struct CheckArguments {
   std::string relative_mse;
   bool github = false;
 
-  [[nodiscard]] bool are_images() const { return exr::is_image(truth) && exr::is_image(candidate); }
+  [[nodiscard]] std::vector<std::filesystem::path> files() const { return {candidates.begin(), candidates.end()}; }
 };
 
 double to_limit(const std::string& text, const std::string& flag) {
@@ -102,14 +98,21 @@ std::optional<double> to_optional_limit(const std::string& text, const std::stri
   return text.empty() ? std::nullopt : std::optional(to_limit(text, flag));
 }
 
-check::Quantile to_quantile(const std::string& text) {
-  const std::size_t equals = text.find('=');
+// "NAME=NUMBER", the last equals sign counts.
+std::pair<std::string, double> to_pair(const std::string& text, const std::string& flag, const char* why,
+                                       const char* example) {
+  const std::size_t equals = text.rfind('=');
   if (equals == std::string::npos) {
-    text::refuse("--quantile: " + text::in_quotes(text) + " has no equals sign",
-                 "a quantile is a share of the rows and a limit for their errors",
-                 "write, for example, --quantile 0.99=1e-3");
+    text::refuse(flag + ": " + text::in_quotes(text) + " has no equals sign", why,
+                 "write, for example, " + flag + ' ' + example);
   }
-  return {to_limit(text.substr(0, equals), "--quantile"), to_limit(text.substr(equals + 1), "--quantile")};
+  return {text.substr(0, equals), to_limit(text.substr(equals + 1), flag)};
+}
+
+check::Quantile to_quantile(const std::string& text) {
+  const auto [share, limit] =
+      to_pair(text, "--quantile", "a quantile is a share of the rows and a limit for their errors", "0.99=1e-3");
+  return {to_limit(share, "--quantile"), limit};
 }
 
 std::array<std::string, 3> to_three_names(const std::string& text, const std::string& flag) {
@@ -137,155 +140,47 @@ check::Criteria criteria_of(const CheckArguments& args) {
   return criteria;
 }
 
-check::MatchOptions match_options_of(const CheckArguments& args) {
-  check::MatchOptions options;
-  options.by = args.match == "position" ? check::MatchBy::kPosition : check::MatchBy::kReceiver;
-  options.tolerance = to_limit(args.tolerance, "--tolerance");
-  options.normal_tolerance = to_limit(args.normal_tolerance, "--normal-tolerance");
-  options.partial = args.partial;
+check::Options options_of(const CheckArguments& args) {
+  check::Options options{.truth_column = args.truth_column, .columns = args.columns, .criteria = criteria_of(args)};
+  options.match.by = args.match == "position" ? check::MatchBy::kPosition : check::MatchBy::kReceiver;
+  options.match.tolerance = to_limit(args.tolerance, "--tolerance");
+  options.match.normal_tolerance = to_limit(args.normal_tolerance, "--normal-tolerance");
+  options.match.partial = args.partial;
+  options.columns.position = to_three_names(args.position_columns, "--position-columns");
+  options.columns.normal = to_three_names(args.normal_columns, "--normal-columns");
   return options;
 }
 
-check::CandidateColumns columns_of(const CheckArguments& args) {
-  check::CandidateColumns columns = args.columns;
-  columns.position = to_three_names(args.position_columns, "--position-columns");
-  columns.normal = to_three_names(args.normal_columns, "--normal-columns");
-  return columns;
-}
-
-// Reads both files before it reports the problems of either.
-template <class First, class Second>
-auto both(const First& first, const Second& second) {
-  std::optional<decltype(first())> a;
-  std::optional<decltype(second())> b;
-  std::vector<Problem> problems;
-  const auto attempt = [&](auto& result, const auto& read) {
-    try {
-      result = read();
-    } catch (const InputError& error) {
-      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
-    }
-  };
-  attempt(a, first);
-  attempt(b, second);
-  if (!problems.empty()) throw InputError(std::move(problems));
-  return std::pair(std::move(*a), std::move(*b));
-}
-
-// Of images and matrices, which have their own way to match.
-void refuse_flags_of_rows(const CheckArguments& args, const std::string& what, const std::string& why) {
-  const CheckArguments without;
-  const bool by_rows = args.match != without.match || args.position_columns != without.position_columns ||
-                       args.normal_columns != without.normal_columns || args.tolerance != without.tolerance ||
-                       args.normal_tolerance != without.normal_tolerance;
-  if (!by_rows) return;
-  text::refuse("a flag that matches rows is given with two " + what, why,
-               "remove --match, the tolerances and the columns of coordinates");
-}
+// --- One candidate ---
 
 // Refuses a file that cannot be written as an image, and one for files that are not images.
-void check_error_image(const std::string& file, bool are_images) {
-  if (file.empty()) return;
-  static_cast<void>(render::image_kind(file));
-  if (are_images) return;
+void check_error_image(const CheckArguments& args) {
+  if (args.error_image.empty()) return;
+  static_cast<void>(render::image_kind(args.error_image));
+  if (exr::is_image(args.truth) && exr::is_image(args.candidates.front())) return;
   text::refuse("--error-image is given, but the files are tables", "only images have pixels to show",
                "compare two images, or use --plot");
-}
-
-void require_comparable_matrices(const CheckArguments& args) {
-  check_error_image(args.error_image, false);
-  refuse_flags_of_rows(args, "matrices", "entries are matched by the names of their patches, or by their order");
-  if (args.truth_column == CheckArguments().truth_column) return;
-  text::refuse("--truth-column is given with a matrix", "its values are its factors", "remove it");
-}
-
-// True, or the problem: a file that is missing is not a file of another kind.
-bool require_there(const std::string& file) {
-  if (!files::is_there(file)) static_cast<void>(text::open_text_file(file, "a file"));
-  return true;
-}
-
-// Two images, or neither.
-void require_comparable(const CheckArguments& args) {
-  both([&] { return require_there(args.truth); }, [&] { return require_there(args.candidate); });
-  const bool truth = exr::is_image(args.truth), candidate = exr::is_image(args.candidate);
-  check_error_image(args.error_image, truth && candidate);
-  if (truth != candidate) {
-    text::refuse(truth ? args.candidate : args.truth, "is no image, and the file to compare it with is one",
-                 "images are OpenEXR files and NumPy arrays of shape (height, width, 3)",
-                 "give two images, or two tables");
-  }
-  if (!truth) return;
-  if (!args.columns.receiver.empty() || !args.columns.source.empty()) {
-    text::refuse("a flag that matches rows is given with two images", "pixels are matched by their coordinates",
-                 "remove --receiver-column and --source-column");
-  }
-  refuse_flags_of_rows(args, "images", "pixels are matched by their coordinates");
-}
-
-struct Compared {
-  check::Report report = {};
-  std::optional<check::Images> images = {};
-  std::optional<check::MatrixFacts> matrix = {};
-  std::vector<check::Improvement> improvements = {};  // over the baseline
-};
-
-Compared compare_images(const CheckArguments& args) {
-  const CheckArguments without;
-  const check::ImageLayers layers{args.truth_column == without.truth_column ? "" : args.truth_column,
-                                  args.columns.value};
-  check::Images images = check::read_images(args.truth, args.candidate, layers, args.partial);
-  check::Report report = check::judge(images.truth, images.values, criteria_of(args), images.candidate_file);
-  return {.report = std::move(report), .images = std::move(images)};
-}
-
-Compared compare_matrices(const CheckArguments& args) {
-  const check::Criteria criteria = criteria_of(args);
-  const check::Matrices matrices = check::read_matrices(args.truth, args.candidate, args.columns, args.partial);
-  return {.report = check::judge(matrices.truth, matrices.values, criteria, matrices.candidate_file),
-          .matrix = matrices.facts};
-}
-
-Compared compare_tables(const CheckArguments& args) {
-  const check::Criteria criteria = criteria_of(args);
-  const check::MatchOptions options = match_options_of(args);
-  const check::CandidateColumns columns = columns_of(args);
-  const auto [truth, candidate] = both([&] { return check::read_truth(args.truth, args.truth_column); },
-                                       [&] { return check::read_candidate(args.candidate, columns, options.by); });
-  return {.report = check::judge(truth, check::match(truth, candidate, options), criteria, candidate.file)};
-}
-
-Compared compare(const CheckArguments& args) {
-  const bool are_matrices = table::kind_of(args.truth) == "matrix";
-  are_matrices ? require_comparable_matrices(args) : require_comparable(args);
-  Compared compared = are_matrices        ? compare_matrices(args)
-                      : args.are_images() ? compare_images(args)
-                                          : compare_tables(args);
-  if (!args.baseline.empty()) {
-    compared.improvements =
-        check::hold_against_baseline(compared.report, args.baseline, to_limit(args.slack, "--slack"));
-  }
-  return compared;
 }
 
 void draw(const check::Report& report, const std::string& file) {
   check::Plot plot;
   {
     const InterruptWatch watch;  // a signal waits until gnuplot's folder is removed
-    plot = check::plot_histogram(report, is_interrupted);
+    plot = check::plot(check::histogram_script(report), is_interrupted);
   }
   leave_if_interrupted();
   if (!plot.svg.empty()) return write_whole_file(file, plot.svg);
   std::cerr << "note: " << text::printable(file) << " was not drawn: " << text::printable(plot.why_not) << '\n';
 }
 
-void write_files(const CheckArguments& args, const Compared& compared) {
-  const auto& [report, images, matrix, improvements] = compared;
-  if (!args.junit.empty()) write_whole_file(args.junit, check::junit_xml(report, matrix));
-  if (!args.json.empty()) write_whole_file(args.json, check::json_text(report, matrix, improvements));
+void write_files(const CheckArguments& args, const check::Report& report) {
+  if (!args.junit.empty()) write_whole_file(args.junit, check::junit_xml(report));
+  if (!args.json.empty()) write_whole_file(args.json, check::json_text(report));
   if (!args.plot.empty()) draw(report, args.plot);
-  if (args.error_image.empty() || !images) return;
-  write_whole_file(args.error_image, check::error_image(*images, render::image_kind(args.error_image)));
+  if (args.error_image.empty()) return;
+  const check::Images images =
+      check::read_images(args.truth, args.candidates.front(), {args.truth_column, args.columns.value}, args.partial);
+  write_whole_file(args.error_image, check::error_image(images, render::image_kind(args.error_image)));
 }
 
 // Without an existing baseline, the present statistics are recorded whatever they are.
@@ -300,22 +195,76 @@ void record(const CheckArguments& args, const check::Report& report) {
   std::cout << "Baseline: " << text::printable(args.write_baseline) << '\n';
 }
 
-int run_check(const CheckArguments& args) {
-  const Compared compared = compare(args);
-  const check::Report& report = compared.report;
-  write_files(args, compared);
-  print_check(report, compared.matrix, compared.improvements, args.write_baseline.empty() ? args.baseline : "");
-  record(args, report);
+void print_doubts(const CheckArguments& args, const check::Report& report, const std::string& of) {
   if (args.github) std::cout << check::github_annotations(report);
-  for (const std::string& warning : check::warnings(report))
-    std::cerr << "warning: " << text::printable(warning) << '\n';
+  for (const std::string& warning : check::warnings(report)) {
+    std::cerr << "warning: " << text::printable(of + warning) << '\n';
+  }
+}
+
+int check_one(const CheckArguments& args) {
+  check_error_image(args);
+  check::Report report = check::compare(args.truth, args.candidates.front(), options_of(args));
+  if (!args.baseline.empty()) check::hold_against_baseline(report, args.baseline, to_limit(args.slack, "--slack"));
+  write_files(args, report);
+  print_check(report, args.write_baseline.empty() ? args.baseline : "");
+  record(args, report);
+  print_doubts(args, report, "");
   check_output(std::cout);
   return report.passed() ? 0 : 1;
 }
 
+// --- Several candidates ---
+
+void refuse_flags_of_one(const CheckArguments& args) {
+  const CheckArguments without;
+  for (const auto& [flag, file] :
+       {std::pair("--json", &args.json), std::pair("--junit", &args.junit), std::pair("--plot", &args.plot),
+        std::pair("--error-image", &args.error_image), std::pair("--baseline", &args.baseline),
+        std::pair("--write-baseline", &args.write_baseline)}) {
+    if (file->empty()) continue;
+    text::refuse(std::string(flag) + " is given with a scoreboard", "it is for the report on one candidate",
+                 "use -o DIR, which holds JSON and JUnit XML, or check one candidate");
+  }
+}
+
+int check_several(const CheckArguments& args) {
+  refuse_flags_of_one(args);
+  const std::vector<std::filesystem::path> files = args.files();
+  const std::vector<std::string> names = check::program_names(files);
+  std::vector<std::optional<double>> seconds(names.size());
+  for (const std::string& text : args.times) {
+    const auto [name, time] = to_pair(text, "--time", "a time is of one program", "mine=3.2");
+    const auto known = std::ranges::find(names, name);
+    if (known == names.end()) {
+      text::refuse("--time: there is no program " + text::in_quotes(name), "its time has no row",
+                   "the programs are " + text::joined(names) + ", named by their files");
+    }
+    seconds[static_cast<std::size_t>(known - names.begin())] = time;
+  }
+  check::Scoreboard board = check::scoreboard(args.truth, files, options_of(args));
+  for (std::size_t i = 0; i < names.size(); ++i) board.scores[i].seconds = seconds[i];
+  std::cout << check::markdown(board);
+  if (!args.folder.empty()) {
+    {
+      const InterruptWatch watch;  // a signal waits until the folder is complete or removed
+      check::write(board, args.folder);
+    }
+    leave_if_interrupted();
+    std::cout << "\nScoreboard: " << text::printable(args.folder + "/index.html") << '\n';
+  }
+  bool passed = true;
+  for (const check::Score& score : board.scores) {
+    print_doubts(args, score.report, score.program + ": ");
+    passed = passed && score.report.passed();
+  }
+  check_output(std::cout);
+  return passed ? 0 : 1;
+}
+
 int run(const CheckArguments& args) {
   try {
-    return run_check(args);
+    return args.candidates.size() == 1 && args.folder.empty() ? check_one(args) : check_several(args);
   } catch (const InputError& error) {
     if (args.github) std::cout << check::github_annotations(error) << std::flush;
     throw;
@@ -325,23 +274,24 @@ int run(const CheckArguments& args) {
 void add_matching(CLI::App& command, CheckArguments& args) {
   command
       .add_option("--value-column", args.columns.value,
-                  "The candidate's column to judge (default: value, approximate or exact); of an image its layer or "
+                  "The candidate's column to judge (default: value, approximate or exact; of a table of "
+                  "exactff that of the truth); of an image its layer or "
                   "channel (default: R, G, B)")
       ->type_name("NAME");
   command
       .add_option("--receiver-column", args.columns.receiver,
-                  "The candidate's column of receiver ids (default: receiver or id; from)")
+                  "The candidate's column of receivers (default: receiver or id; from; patch)")
       ->type_name("NAME");
   command
-      .add_option("--source-column", args.columns.source,
-                  "The candidate's column of sources (default: source; to); needed only if the truth has several")
+      .add_option(
+          "--source-column", args.columns.source,
+          "The candidate's column of sources (default: source; to; channel); needed only if the truth has several")
       ->type_name("NAME");
   command
       .add_option(
           "--truth-column", args.truth_column,
-          "The truth's column to compare with, such as unoccluded, radiosity_g, total_g or dF_dx; of an image its "
-          "layer or channel")
-      ->capture_default_str()
+          "The truth's column to compare with, such as unoccluded, radiosity_g, total_g or dF_dx (default: exact, "
+          "factor or radiosity); of an image its layer or channel")
       ->type_name("NAME");
   command.add_option("--match", args.match, "How rows are matched: by the receiver's id or by its position")
       ->check(CLI::IsMember({"receiver", "position"}))
@@ -410,6 +360,13 @@ void add_outputs(CLI::App& command, CheckArguments& args) {
   command.add_option("--json", args.json, "Write everything as JSON")
       ->type_name("FILE")
       ->check(flags::is_written(flags::Format::kJson));
+  command.add_option("-o,--output", args.folder, "Folder for a scoreboard: index.html, scoreboard.json, junit.xml")
+      ->type_name("DIR")
+      ->check(flags::is_written_folder());
+  command.add_option("--time", args.times, "Scoreboard: the time of the program whose file is NAME.*; can be repeated")
+      ->type_name("NAME=SECONDS")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_flag("--github", args.github, "Also print annotations for GitHub Actions");
 }
 
@@ -418,17 +375,20 @@ void add_outputs(CLI::App& command, CheckArguments& args) {
 Command add_check(CLI::App& app) {
   auto args = std::make_shared<CheckArguments>();
   CLI::App* command =
-      app.add_subcommand("check", "Compare the values of another program with a truth file: pass or fail");
+      app.add_subcommand("check", "Compare the values of other programs with a truth file: pass or fail");
   command
       ->add_option(
           "TRUTH", args->truth,
-          "File written by `exactff truth` or `exactff matrix -o`, or exact.csv of `exactff compare`; or an image, "
-          ".exr or .npy")
+          "Table written by `exactff truth`, `matrix -o` or `radiosity -o`, or exact.csv of `exactff compare`; or an "
+          "image, .exr or .npy")
       ->required()
       ->type_name("FILE")
       ->check(flags::is_read());
-  command->add_option("CANDIDATE", args->candidate, "CSV file of the values to judge; or an image, or a matrix")
+  command
+      ->add_option("CANDIDATE", args->candidates,
+                   "CSV file of the values to judge; or an image, or a matrix; several are a scoreboard")
       ->required()
+      ->expected(1, -1)
       ->type_name("FILE")
       ->check(flags::is_read());
   add_matching(*command, *args);

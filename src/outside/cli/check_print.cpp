@@ -4,8 +4,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "check/errors.h"
-#include "check/histogram.h"
+#include "check/report.h"
 #include "cli/text_table.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -77,15 +76,13 @@ void print_matrix_facts(const std::optional<check::MatrixFacts>& matrix) {
 }
 
 // The first column is always our own text, so that no line can begin with text from a file.
-void print_worst(const check::Report& report, bool of_matrix) {
+void print_worst(const check::Report& report) {
   if (report.worst.empty()) return;
   std::cout << "Worst rows by " << to_string(report.worst_by) << '\n';
   TextTable table;
   table.add_column("#", Align::kRight);
-  for (const char* title : {of_matrix ? "from" : "receiver", of_matrix ? "to" : "source"}) {
-    table.add_column(title);
-  }
-  for (const char* title : {of_matrix ? "truth" : "exact", "found", "error", "relative", "line"})
+  for (const std::string& title : report.keys) table.add_column(title);
+  for (const char* title : {report.worst.front().claim ? "truth" : "exact", "found", "error", "relative", "line"})
     table.add_column(title, Align::kRight);
   for (std::size_t i = 0; i < report.worst.size(); ++i) {
     const check::RowError& row = report.worst[i];
@@ -137,20 +134,20 @@ void print_end(const check::Report& report, bool improved, const std::string& ba
 
 }  // namespace
 
-void print_check(const check::Report& report, const std::optional<check::MatrixFacts>& matrix,
-                 const std::vector<check::Improvement>& improvements, const std::string& baseline_to_tighten) {
+void print_check(const check::Report& report, const std::string& baseline_to_tighten) {
   std::cout << "truth      " << text::printable(report.truth_file) << " (" << text::printable(report.column) << ", "
-            << (matrix ? text::counted(report.truth_rows, "entry", "entries") : text::counted(report.truth_rows, "row"))
+            << (report.matrix ? text::counted(report.truth_rows, "entry", "entries")
+                              : text::counted(report.truth_rows, "row"))
             << ")\n"
             << "candidate  " << text::printable(report.candidate_file) << " ("
             << text::counted(report.overall.rows, "row") << " judged)\n\n";
   print_distribution(report);
   print_histogram(report);
-  print_matrix_facts(matrix);
-  print_worst(report, matrix.has_value());
+  print_matrix_facts(report.matrix);
+  print_worst(report);
   print_verdicts(report);
-  print_improvements(improvements);
-  print_end(report, !improvements.empty(), baseline_to_tighten);
+  print_improvements(report.improvements);
+  print_end(report, !report.improvements.empty(), baseline_to_tighten);
 }
 
 }  // namespace exactff::cli

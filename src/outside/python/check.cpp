@@ -3,10 +3,7 @@
 
 #include <pybind11/stl/filesystem.h>
 
-#include "check/baseline.h"
-#include "check/json.h"
-#include "check/junit.h"
-#include "check/words.h"
+#include "check/report.h"
 #include "files/apart.h"
 #include "files/file.h"
 #include "python/bindings.h"
@@ -66,14 +63,7 @@ py::tuple statistics_of(const check::Report& report) {
                         distribution(all.relative));
 }
 
-// Adds the verdicts on the baseline, and writes the files.
-py::tuple result_of(check::Report report, const CheckFiles& files) {
-  std::vector<check::Improvement> improvements;
-  if (files.baseline) improvements = check::hold_against_baseline(report, *files.baseline, files.slack);
-  if (files.junit) write_file(*files.junit, check::junit_xml(report));
-  if (files.write_baseline && check::may_be_recorded(report)) {
-    write_file(*files.write_baseline, check::baseline_text(report));
-  }
+py::tuple tuple_of(const check::Report& report) {
   py::list verdicts, worst, warnings, better;
   for (const check::Verdict& v : report.verdicts) {
     verdicts.append(py::make_tuple(v.criterion, shown(v.source), v.measured, v.limit, v.passed, shown(sentence(v))));
@@ -82,28 +72,65 @@ py::tuple result_of(check::Report report, const CheckFiles& files) {
     worst.append(py::make_tuple(shown(row.receiver), shown(row.source), row.truth, row.value, row.error, row.relative));
   }
   for (const std::string& warning : check::warnings(report)) warnings.append(shown(warning));
-  for (const check::Improvement& one : improvements) {
+  for (const check::Improvement& one : report.improvements) {
     better.append(py::make_tuple(one.criterion, shown(one.source), one.recorded, one.now));
   }
   return py::make_tuple(report.passed(), statistics_of(report), verdicts, worst, warnings, better,
-                        shown(failure_message(report)), shown(json_text(report, {}, improvements)));
+                        shown(failure_message(report)), shown(json_text(report)));
 }
 
-py::tuple check_files(const std::filesystem::path& truth_file, const std::filesystem::path& candidate_file,
-                      const std::string& truth_column, const std::string& value_column, bool by_position,
-                      double tolerance, bool partial, const Limits& limits, const CheckFiles& files) {
-  require_apart(files, {{"truth", truth_file}, {"values", candidate_file}});
-  check::MatchOptions options;
-  options.by = by_position ? check::MatchBy::kPosition : check::MatchBy::kReceiver;
-  options.tolerance = tolerance;
-  options.partial = partial;
+// Adds the verdicts on the baseline, and writes the files.
+py::tuple result_of(check::Report report, const CheckFiles& files) {
+  if (files.baseline) check::hold_against_baseline(report, *files.baseline, files.slack);
+  if (files.junit) write_file(*files.junit, check::junit_xml(report));
+  if (files.write_baseline && check::may_be_recorded(report)) {
+    write_file(*files.write_baseline, check::baseline_text(report));
+  }
+  return tuple_of(report);
+}
+
+// How rows of two files are matched.
+struct Matching {
+  std::string truth_column, value_column;
+  bool by_position = false, partial = false;
+  double tolerance = 0.0;
+};
+
+check::Options options_of(const Matching& matching, const Limits& limits) {
+  check::Options options{.truth_column = matching.truth_column, .criteria = criteria_of(limits)};
+  options.columns.value = matching.value_column;
+  options.match.by = matching.by_position ? check::MatchBy::kPosition : check::MatchBy::kReceiver;
+  options.match.tolerance = matching.tolerance;
+  options.match.partial = matching.partial;
+  return options;
+}
+
+py::tuple check_files(const std::filesystem::path& truth, const std::filesystem::path& candidate,
+                      const Matching& matching, const Limits& limits, const CheckFiles& files) {
+  require_apart(files, {{"truth", truth}, {"values", candidate}});
   check::Report report = [&] {
     const py::gil_scoped_release released;
-    const check::Truth truth = check::read_truth(truth_file, truth_column);
-    const check::Candidate candidate = check::read_candidate(candidate_file, {.value = value_column}, options.by);
-    return judge(truth, match(truth, candidate, options), criteria_of(limits), candidate.file);
+    return check::compare(truth, candidate, options_of(matching, limits));
   }();
   return result_of(std::move(report), files);
+}
+
+// The table in Markdown, and of each program its name, the seconds and the report.
+py::tuple scoreboard(const std::filesystem::path& truth, const std::vector<std::filesystem::path>& candidates,
+                     const Matching& matching, const Limits& limits, const std::vector<std::optional<double>>& seconds,
+                     const std::optional<std::filesystem::path>& folder) {
+  check::Scoreboard board;
+  {
+    const py::gil_scoped_release released;
+    board = check::scoreboard(truth, candidates, options_of(matching, limits));
+    for (std::size_t i = 0; i < board.scores.size(); ++i) board.scores[i].seconds = seconds.at(i);
+    if (folder) check::write(board, *folder);
+  }
+  py::list programs;
+  for (const check::Score& score : board.scores) {
+    programs.append(py::make_tuple(shown(score.program), score.seconds, tuple_of(score.report)));
+  }
+  return py::make_tuple(shown(check::markdown(board)), programs);
 }
 
 check::Report judged(const check::Truth& truth, const Numbers& values, const Limits& limits) {
@@ -178,9 +205,20 @@ void bind_check(py::module_& module) {
       .def_readwrite("write_baseline", &CheckFiles::write_baseline)
       .def_readwrite("junit", &CheckFiles::junit)
       .def_readwrite("slack", &CheckFiles::slack);
-  module.def("check_files", &check_files, py::arg("truth"), py::arg("candidate"), py::arg("truth_column"),
-             py::arg("value_column"), py::arg("by_position"), py::arg("tolerance"), py::arg("partial"),
+  py::class_<Matching>(module, "Matching")
+      .def(py::init<>())
+      .def_readwrite("truth_column", &Matching::truth_column)
+      .def_readwrite("value_column", &Matching::value_column)
+      .def_readwrite("by_position", &Matching::by_position)
+      .def_readwrite("partial", &Matching::partial)
+      .def_readwrite("tolerance", &Matching::tolerance);
+  module.def("check_files", &check_files, py::arg("truth"), py::arg("candidate"), py::arg("matching"),
              py::arg("limits"), py::arg("files"));
+  module.def("scoreboard", &scoreboard, py::arg("truth"), py::arg("candidates"), py::arg("matching"), py::arg("limits"),
+             py::arg("seconds"), py::arg("folder"));
+  module.def(
+      "program_names", [](const std::vector<std::filesystem::path>& files) { return check::program_names(files); },
+      py::arg("candidates"));
   module.def("check_values", &check_values, py::arg("truth"), py::arg("values"), py::arg("truth_column"),
              py::arg("limits"), py::arg("files"));
   module.def("check_arrays", &check_arrays, py::arg("exact"), py::arg("lower"), py::arg("upper"), py::arg("status"),

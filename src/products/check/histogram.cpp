@@ -1,9 +1,9 @@
-#include "check/histogram.h"
-
+// Pictures of errors, drawn by gnuplot.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "check/report.h"
 #include "files/work_folder.h"
 #include "kernel/float_environment.h"
 #include "page/gnuplot.h"
@@ -81,8 +81,34 @@ std::string histogram_script(const Report& report) {
   return page::bar_plot({"absolute error" + exact, rows, true, false}, bars, limits(report));
 }
 
-Plot plot_histogram(const Report& report, const std::function<bool()>& cancelled) {
-  const std::string script = histogram_script(report);
+// A step of a line for each row would be too many.
+std::string shares_script(const Scoreboard& board) {
+  const kernel::StandardArithmetic arithmetic;
+  constexpr std::size_t kMostPoints = 400;
+  std::vector<page::Series> lines;
+  for (const Score& score : board.scores) {
+    page::Series& line = lines.emplace_back();
+    line.title = score.program;
+    line.style = static_cast<int>(lines.size());
+    line.drawn = page::Drawn::kLine;
+    const std::vector<double>& errors = score.report.magnitudes;
+    const auto all = static_cast<double>(score.report.truth_rows);
+    const std::size_t step = errors.size() / kMostPoints + 1;
+    for (std::size_t i = 0; i < errors.size(); i += step) {
+      const std::size_t last = std::min(i + step, errors.size());
+      line.points.emplace_back(errors[last - 1], static_cast<double>(last) / all);
+    }
+  }
+  if (lines.empty()) return {};
+  return page::line_plot({.x = "absolute error",
+                          .y = "share of all cases",
+                          .log_y = false,
+                          .extra = {"set yrange [0:1]"},
+                          .marks = limits(board.scores.front().report)},
+                         lines);
+}
+
+Plot plot(const std::string& script, const std::function<bool()>& cancelled) {
   if (script.empty()) return {{}, "every error is 0, which a logarithmic axis cannot show"};
   const files::WorkFolder scratch = scratch_folder();
   const page::PlotResult result = page::run_gnuplot(script, scratch.path(), cancelled);

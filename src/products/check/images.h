@@ -8,6 +8,7 @@
 
 #include "exactff/check.h"
 #include "exactff/exr.h"
+#include "exactff/render.h"
 
 namespace exactff::check {
 
@@ -31,5 +32,9 @@ struct Images {
 // has, unless `partial`; throws Cancelled.
 [[nodiscard]] Images read_images(const std::filesystem::path& truth, const std::filesystem::path& candidate,
                                  const ImageLayers& layers = {}, bool partial = false);
+
+// The bytes of candidate minus truth: as EXR, a channel for each that was compared, NaN where nothing was; as PNG, in
+// colours.
+[[nodiscard]] std::string error_image(const Images& images, render::ImageKind kind);
 
 }  // namespace exactff::check

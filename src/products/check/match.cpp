@@ -16,8 +16,7 @@
 #include <span>
 #include <utility>
 
-#include "check/row_keys.h"
-#include "exactff/check.h"
+#include "check/tables.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
 #include "text/phrases.h"
@@ -89,7 +88,16 @@ class PositionIndex {
 class Matcher {
  public:
   Matcher(const Truth& truth, const Candidate& candidate, const MatchOptions& options)
-      : truth_(truth), candidate_(candidate), options_(options), found_(truth.rows.size(), kNothing) {}
+      : truth_(truth),
+        file_(candidate.file),
+        table_(candidate.table),
+        options_(options),
+        values_(numbers_of(table_, "value")),
+        receivers_(texts_of(table_, "receiver")),
+        sources_(texts_of(table_, "source")),
+        point_{numbers_of(table_, "x"), numbers_of(table_, "y"), numbers_of(table_, "z")},
+        normal_{numbers_of(table_, "nx"), numbers_of(table_, "ny"), numbers_of(table_, "nz")},
+        found_(truth.rows.size(), kNothing) {}
 
   std::vector<Measured> match() {
     check_request();
@@ -101,8 +109,13 @@ class Matcher {
   }
 
  private:
+  using Vector = std::array<const std::vector<double>*, 3>;  // null where the candidate has none
+  [[nodiscard]] static Vec3 at(const Vector& columns, std::size_t row) {
+    return {(*columns[0])[row], (*columns[1])[row], (*columns[2])[row]};
+  }
+
   void complain(std::size_t line, std::string what, std::string why, std::string suggestion) {
-    problems_.add({candidate_.file, line, std::move(what), std::move(why), std::move(suggestion)});
+    problems_.add({file_, line, std::move(what), std::move(why), std::move(suggestion)});
   }
 
   void check_request() {
@@ -116,34 +129,33 @@ class Matcher {
       throw InputError({truth_.file, 0, "has no columns x, y and z", "matching by position needs them",
                         "match by receiver instead"});
     }
-    if (candidate_.rows.empty()) {
-      throw InputError({candidate_.file, 0, "has no rows", "there is nothing to check", "write one row per value"});
+    if (table_.rows() == 0) {
+      throw InputError({file_, 0, "has no rows", "there is nothing to check", "write one row per value"});
     }
   }
 
   void look_up_sources() {
-    source_.assign(candidate_.sources.size(), 0);
+    source_.assign(table_.rows(), 0);
     const bool has_none = truth_.sources.size() == 1 && truth_.sources.front().empty();
     if (has_none) return;
-    if (!candidate_.has_sources) return require_single_source();
-    for (std::size_t i = 0; i < source_.size(); ++i) {
-      const auto known = std::find(truth_.sources.begin(), truth_.sources.end(), candidate_.sources[i]);
-      source_[i] =
-          known == truth_.sources.end() ? kNothing : static_cast<std::uint32_t>(known - truth_.sources.begin());
-    }
+    if (sources_ == nullptr) return require_single_source();
+    NameList known;
+    for (const std::string& source : truth_.sources) (void)known.number_of(source);
+    for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = known.find((*sources_)[i]).value_or(kNothing);
   }
 
   void require_single_source() const {
     if (truth_.sources.size() == 1) return;
-    throw InputError({candidate_.file, 0, "has no column that names the source",
+    throw InputError({file_, 0, "has no column that names the " + truth_.keys[1],
                       "the truth has " + std::to_string(truth_.sources.size()) + ": " + source_names(),
-                      "add a column named source, or name the column with --source-column"});
+                      "add a column named " + truth_.keys[1] + ", or name the column with --source-column"});
   }
 
-  [[nodiscard]] std::string receiver_word() const { return truth_.is_matrix ? "row" : "receiver"; }
-  [[nodiscard]] std::string source_word() const { return truth_.is_matrix ? "column" : "source"; }
-  [[nodiscard]] std::string of_source(const std::string& source) const {
-    return source.empty() ? "" : " of " + source_word() + " '" + source + "'";
+  [[nodiscard]] std::string receiver_word() const { return word_of(truth_.keys[0]); }
+  [[nodiscard]] std::string source_word() const { return word_of(truth_.keys[1]); }
+  // " of source 'light'", as the candidate names it.
+  [[nodiscard]] std::string of_source(std::uint32_t row) const {
+    return sources_ == nullptr ? std::string() : check::of_source(truth_, (*sources_)[row]);
   }
 
   [[nodiscard]] std::string source_names() const {
@@ -156,57 +168,60 @@ class Matcher {
   }
 
   // Returns false, and complains, if the truth does not have the source of the row.
-  bool has_known_source(const CandidateRow& row) {
-    if (source_[row.source] != kNothing) return true;
-    complain(row.line, "the truth has no " + source_word() + ' ' + text::in_quotes(candidate_.sources[row.source]),
+  bool has_known_source(std::uint32_t row) {
+    if (source_[row] != kNothing) return true;
+    complain(table_.line_of(row), "the truth has no " + source_word() + ' ' + text::in_quotes((*sources_)[row]),
              "its " + source_word() + "s are " + source_names(), "check the name, or remove the row");
     return false;
   }
 
   void match_receivers() {
-    RowKeys<TruthRow> keys(truth_.rows);
-    for (std::uint32_t i = 0; i < truth_.rows.size(); ++i) (void)keys.insert(i);
-    for (std::uint32_t i = 0; i < candidate_.rows.size(); ++i) {
-      const CandidateRow& row = candidate_.rows[i];
-      if (!has_known_source(row)) continue;
-      const std::size_t found = keys.find(row.receiver, source_[row.source]);
-      if (found == truth_.rows.size()) {
-        complain(row.line,
-                 "the truth has no " + receiver_word() + ' ' + text::in_quotes(row.receiver) + of_source(name_of(row)),
+    RowIndex rows(truth_.rows.size());
+    for (std::uint32_t i = 0; i < truth_.rows.size(); ++i)
+      rows.try_emplace({truth_.rows[i].receiver, truth_.rows[i].source}, i);
+    for (std::uint32_t i = 0; i < table_.rows(); ++i) {
+      if (!has_known_source(i)) continue;
+      const auto found = rows.find({(*receivers_)[i], source_[i]});
+      if (found == rows.end()) {
+        complain(table_.line_of(i),
+                 "the truth has no " + receiver_word() + ' ' + text::in_quotes((*receivers_)[i]) + of_source(i),
                  "its value cannot be checked", unknown_advice());
       } else {
-        take(found, i);
+        take(found->second, i);
       }
     }
   }
 
   [[nodiscard]] std::string unknown_advice() const {
     const std::string first = text::in_quotes(truth_.rows.front().receiver);
-    if (truth_.is_matrix) return "its rows have names such as " + first + "; correct the name";
+    const std::string word = receiver_word();
+    if (word != "receiver") {
+      return "its " + word + (word.ends_with("ch") ? "es" : "s") + " have names such as " + first +
+             "; correct the name";
+    }
     return "its receivers have ids such as " + first + "; correct the id, or use --match position";
   }
 
   void match_positions() {
-    const PositionIndex index(truth_, options_, truth_.has_normals && candidate_.has_normals);
+    const PositionIndex index(truth_, options_, truth_.has_normals && normal_[0] != nullptr);
     std::vector<std::uint32_t> unmatched;
-    for (std::uint32_t i = 0; i < candidate_.rows.size(); ++i) {
-      const CandidateRow& row = candidate_.rows[i];
-      if (!has_known_source(row)) continue;
-      const std::vector<std::uint32_t> found = index.near(row.point, row.normal, source_[row.source]);
+    for (std::uint32_t i = 0; i < table_.rows(); ++i) {
+      if (!has_known_source(i)) continue;
+      const Vec3 normal = normal_[0] != nullptr ? at(normal_, i) : Vec3{};
+      const std::vector<std::uint32_t> found = index.near(at(point_, i), normal, source_[i]);
       if (found.size() == 1) {
         take(found.front(), i);
       } else if (found.empty()) {
         unmatched.push_back(i);
       } else {
-        complain_about_choice(row, found);
+        complain_about_choice(i, found);
       }
     }
     complain_about_distances(index, unmatched);
     for (const std::uint32_t i : unmatched) {
-      const CandidateRow& row = candidate_.rows[i];
-      complain(row.line,
-               "the truth has no receiver within " + text::shortest(options_.tolerance) + " of " + place_of(row.point) +
-                   of_source(name_of(row)),
+      complain(table_.line_of(i),
+               "the truth has no receiver within " + text::shortest(options_.tolerance) + " of " +
+                   place_of(at(point_, i)) + of_source(i),
                "its value cannot be checked", "use a larger --tolerance if the coordinates were rounded");
     }
   }
@@ -219,8 +234,7 @@ class Matcher {
   void complain_about_distances(const PositionIndex& index, std::span<const std::uint32_t> unmatched) {
     double nearest = std::numeric_limits<double>::infinity(), furthest = 0.0;
     for (const std::uint32_t i : unmatched) {
-      const CandidateRow& row = candidate_.rows[i];
-      const double distance = index.distance_to_nearest(row.point, source_[row.source]);
+      const double distance = index.distance_to_nearest(at(point_, i), source_[i]);
       nearest = std::min(nearest, distance);
       furthest = std::max(furthest, distance);
     }
@@ -237,20 +251,18 @@ class Matcher {
                   : "check the unit of length and the columns, or use a larger --tolerance");
   }
 
-  void complain_about_choice(const CandidateRow& row, const std::vector<std::uint32_t>& found) {
+  void complain_about_choice(std::uint32_t row, const std::vector<std::uint32_t>& found) {
     const auto told = [&](std::size_t i) {
       const TruthRow& other = truth_.rows[found[i]];
       return text::in_quotes(other.receiver) + " at a distance of " +
-             text::short_number(kernel::distance(other.point, row.point));
+             text::short_number(kernel::distance(other.point, at(point_, row)));
     };
-    complain(row.line,
+    complain(table_.line_of(row),
              std::to_string(found.size()) + " receivers of the truth match: " + told(0) + " and " + told(1) +
                  (found.size() > 2 ? ", and more" : ""),
              "it is not clear which one the value belongs to",
              "use a smaller --tolerance, add normals, or match by receiver");
   }
-
-  [[nodiscard]] const std::string& name_of(const CandidateRow& row) const { return candidate_.sources[row.source]; }
 
   void take(std::size_t truth_row, std::uint32_t row) {
     std::uint32_t& found = found_[truth_row];
@@ -258,10 +270,13 @@ class Matcher {
       found = row;
       return;
     }
-    complain(candidate_.rows[row].line,
-             receiver_word() + ' ' + text::in_quotes(truth_.rows[truth_row].receiver) +
-                 of_source(truth_.source_of(truth_.rows[truth_row])) + " already has a value (line " +
-                 std::to_string(candidate_.rows[found].line) + ")",
+    const TruthRow& known = truth_.rows[truth_row];
+    // Our own tables repeat a total for each source.
+    if (truth_.column.starts_with("total_") && !table_.kind().empty() && (*values_)[row] == (*values_)[found]) return;
+    complain(table_.line_of(row),
+             receiver_word() + ' ' + text::in_quotes(known.receiver) +
+                 check::of_source(truth_, truth_.source_of(known)) + " already has a value (line " +
+                 std::to_string(table_.line_of(found)) + ")",
              "only one value can be checked", "keep one of them");
   }
 
@@ -276,11 +291,11 @@ class Matcher {
       const TruthRow& row = truth_.rows[i];
       const bool by_position = options_.by == MatchBy::kPosition;
       names.push_back(text::in_quotes(row.receiver) + (by_position ? " at " + place_of(row.point) : "") +
-                      of_source(truth_.source_of(row)));
+                      check::of_source(truth_, truth_.source_of(row)));
     }
     if (missing > kShown) names.push_back(std::to_string(missing - kShown) + " more");
     complain(0,
-             "no value for " + text::counted_of(missing, found_.size(), truth_.is_matrix ? "value" : "row") +
+             "no value for " + text::counted_of(missing, found_.size(), truth_.kind == "matrix" ? "value" : "row") +
                  " of the truth: " + receiver_word() + ' ' + text::enumerate(names),
              "missing values cannot be checked",
              missing < found_.size() ? "add them, or use --partial to check the others" : "check how rows are matched");
@@ -290,16 +305,19 @@ class Matcher {
     std::vector<Measured> values;
     for (std::uint32_t i = 0; i < found_.size(); ++i) {
       if (found_[i] == kNothing) continue;
-      const CandidateRow& row = candidate_.rows[found_[i]];
-      values.push_back({i, row.line, row.value});
+      values.push_back({i, static_cast<std::uint32_t>(table_.line_of(found_[i])), (*values_)[found_[i]]});
     }
     return values;
   }
 
   const Truth& truth_;
-  const Candidate& candidate_;
+  const std::string& file_;
+  const table::Table& table_;
   const MatchOptions& options_;
-  std::vector<std::uint32_t> source_;  // source of the truth, indexed by source of the candidate
+  const std::vector<double>* values_;
+  const std::vector<std::string>*receivers_, *sources_;  // null where the candidate has none
+  const Vector point_, normal_;
+  std::vector<std::uint32_t> source_;  // source of the truth, of each row of the candidate
   std::vector<std::uint32_t> found_;   // row of the candidate, indexed by row of the truth
   text::ProblemList problems_;
 };

@@ -31,18 +31,15 @@ PixelError error_of(const double* judged, const double* truth) {
   return worst;
 }
 
-double percentile(const std::vector<double>& values, double percent) {
-  return values.empty() ? 0.0 : kernel::percentile(values, percent);
-}
-
-void set_statistics(Errors& errors, std::vector<double> magnitudes, const std::vector<double>& relative) {
-  std::ranges::sort(magnitudes);
+void set_statistics(Errors& errors, std::vector<double> magnitudes, std::vector<double> relative) {
   errors.pixels = magnitudes.size();
-  errors.p99 = percentile(magnitudes, 99.0);
-  errors.worst = percentile(magnitudes, 100.0);
-  errors.relative_median = percentile(relative, 50.0);
-  errors.relative_p99 = percentile(relative, 99.0);
-  errors.rms = kernel::root_mean_square(magnitudes, errors.worst);
+  const kernel::Distribution absolute = kernel::distribution(std::move(magnitudes));
+  const kernel::Distribution shares = kernel::distribution(std::move(relative));
+  errors.p99 = absolute.p99;
+  errors.worst = absolute.max;
+  errors.rms = absolute.rms;
+  errors.relative_median = shares.median;
+  errors.relative_p99 = shares.p99;
 }
 
 void require_same_size(const Picture& judged, const Picture& truth) {
@@ -69,7 +66,7 @@ Errors errors_of(const Picture& judged, const Picture& truth) {
     magnitudes.push_back(std::abs(pixel.error));
     relative.push_back(pixel.relative);
   }
-  set_statistics(errors, std::move(magnitudes), relative);
+  set_statistics(errors, std::move(magnitudes), std::move(relative));
   return errors;
 }
 

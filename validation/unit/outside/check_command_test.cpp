@@ -45,7 +45,7 @@ class CheckCommand : public ::testing::Test {
   void SetUp() override {
     truth_ = directory_
                  .write("truth.csv",
-                        "# exactff truth\nreceiver,x,y,z,nx,ny,nz,source,exact,largest_rho_b\n"
+                        "# by hand\nreceiver,x,y,z,nx,ny,nz,source,exact,largest_rho_b\n"
                         "a,0,0,0,0,0,1,s,0.5,10\na,0,0,0,0,0,1,t,0.25,10\nb,1,0,0,0,0,1,s,0.125,10\n"
                         "b,1,0,0,0,0,1,t,0.25,10\nc,2,0,0,0,0,1,s,0,10\nc,2,0,0,0,0,1,t,0.25,10\n")
                  .string();
@@ -65,14 +65,13 @@ class CheckCommand : public ::testing::Test {
   std::string truth_;
 };
 
-// Truth files of older versions hold the bytes of the scene's file; other programs may still write them.
+// Other programs may write the bytes of the scene's file.
 TEST_F(CheckCommand, NamesMatchInLatin1AndInUtf8) {
   for (const std::string in_truth : {"T\xFCr", "T\u00FCr"}) {
-    truth_ =
-        directory_
-            .write("names.csv", "# exactff truth of r\xE4um.obj\nreceiver,x,y,z,nx,ny,nz,source,exact,largest_rho_b\n" +
-                                    in_truth + ":1,0,0,0,0,0,1," + in_truth + ",0.5,10\n")
-            .string();
+    truth_ = directory_
+                 .write("names.csv", "# truth of r\xE4um.obj\nreceiver,x,y,z,nx,ny,nz,source,exact,largest_rho_b\n" +
+                                         in_truth + ":1,0,0,0,0,0,1," + in_truth + ",0.5,10\n")
+                 .string();
     for (const std::string mine : {"T\xFCr", "T\u00FCr"}) {
       const std::string file =
           directory_.write("mine.csv", "receiver,source,value\n" + mine + ":1," + mine + ",0.5\n").string();
@@ -270,6 +269,26 @@ TEST_F(CheckCommand, TakesImagesOfNumPyAndNoTableBesideThem) {
   EXPECT_HOLDS(run.output, "1 x1y0 B 2.5 2 -0.5 0.2");
   EXPECT_TRUE(contents(path("e.png")).starts_with("\x89PNG"));
   EXPECT_EQ(check(mine, {}).exit_code, 2);
+}
+
+TEST_F(CheckCommand, SeveralCandidatesAreAScoreboard) {
+  const std::string right = candidate("0.25", "right.csv"), wrong = candidate("0.375", "wrong.csv");
+  const auto run = [&](std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"check", truth_, right, wrong, "--max-abs", "0.1"});
+    return run_program(EXACTFF_PROGRAM, flags);
+  };
+  const ProgramRun both = run({"-o", path("board"), "--time", "wrong=2.5"});
+  EXPECT_EQ(both.exit_code, 1);
+  EXPECT_HOLDS(both.output, "| right | passed | 6 of 6 | 0 |");
+  EXPECT_HOLDS(both.output, "| wrong | FAILED | 6 of 6 | 0.12 |");
+  EXPECT_HOLDS(both.output, "1 of 2 | 2.5 s |\n");
+  EXPECT_HOLDS(contents(path("board/index.html")), "Every limit is kept by 1 of 2 programs.");
+  EXPECT_EQ(run({"--max-rel", "1"}).exit_code, 1);
+  EXPECT_EQ(run_program(EXACTFF_PROGRAM, {"check", truth_, right, right, "-o", path("board")}).exit_code, 0);
+  for (const std::vector<std::string>& flags : std::vector<std::vector<std::string>>{
+           {"--json", path("j.json")}, {"--time", "other=1"}, {"--time", "wrong"}, {"-o", path("board/index.html")}}) {
+    EXPECT_EQ(run(flags).exit_code, 2) << flags[0];
+  }
 }
 
 TEST_F(CheckCommand, ShowsAnExample) {

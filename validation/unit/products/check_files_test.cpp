@@ -1,13 +1,22 @@
 // The files that a check reads: the truth, and the values held against it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <random>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "check/report.h"
 #include "exactff/check.h"
+#include "exactff/table.h"
 #include "support/complaint.h"
+#include "text/phrases.h"
 #include "unit/products/check_support.h"
 
 namespace exactff::check {
@@ -19,7 +28,7 @@ using validation::complaint;
 
 TEST(TruthFile, TellsRowsSourcesAndFaces) {
   const Truth truth = truth_of(
-      "# of room.obj\r\n# by hand\r\n"
+      "# by hand\r\n"
       "receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,radiosity_r,radiosity_g,radiosity_b,largest_rho_b,status\r\n"
       "\"1,1\",floor:2,1,2,3,0,0,2,light,0.25,0.2,0.3,1,2,3,12,certified\r\n"
       "\"1,1\",floor:2,1,2,3,0,0,2,lamp,0,0,0,0,0,0,7,zero\r\n"
@@ -27,12 +36,12 @@ TEST(TruthFile, TellsRowsSourcesAndFaces) {
   EXPECT_EQ(truth.sources, (std::vector<std::string>{"light", "lamp"}));
   ASSERT_EQ(truth.rows.size(), 3U);
   const TruthRow& first = truth.rows.front();
-  EXPECT_EQ(first.receiver, "r1c1");  // "1,1" in files of older versions
+  EXPECT_EQ(first.receiver, "1,1");
   EXPECT_EQ(truth.face_of(first), "floor:2");
   EXPECT_EQ(truth.face_of(truth.rows[2]), "");
   EXPECT_EQ(first.point, (Vec3{1, 2, 3}));
   EXPECT_EQ(first.normal, (Vec3{0, 0, 2}));
-  EXPECT_EQ(first.line, 4U);
+  EXPECT_EQ(first.line, 3U);
   EXPECT_EQ(first.value, 0.25);
   EXPECT_EQ(first.lower, 0.2);
   EXPECT_EQ(first.upper, 0.3);
@@ -102,13 +111,13 @@ TEST(TruthFile, IsRefusedWithoutColumnsOrRows) {
 // --- Reading the candidate ---
 
 TEST(CandidateFile, NamesItsColumnsByDefaultOrByRequest) {
-  EXPECT_EQ(candidate_of("receiver,exact,approximate\na,1,2\n").rows.front().value, 2.0);
-  EXPECT_EQ(candidate_of("id,value,exact\na,1,2\n").rows.front().value, 1.0);
+  EXPECT_EQ(values_of(candidate_of("receiver,exact,approximate\na,1,2\n")).front(), 2.0);
+  EXPECT_EQ(values_of(candidate_of("id,value,exact\na,1,2\n")).front(), 1.0);
   const CandidateColumns columns{.value = "ff", .receiver = "point", .source = "lamp"};
   const Candidate candidate = candidate_of("point,lamp,ff,value\na,l,3,4\n", columns);
-  EXPECT_EQ(candidate.rows.front().value, 3.0);
-  EXPECT_EQ(candidate.rows.front().receiver, "a");
-  EXPECT_EQ(candidate.sources, std::vector<std::string>{"l"});
+  EXPECT_EQ(values_of(candidate), std::vector<double>{3.0});
+  EXPECT_EQ(texts_of(candidate, "receiver"), std::vector<std::string>{"a"});
+  EXPECT_EQ(texts_of(candidate, "source"), std::vector<std::string>{"l"});
 }
 
 // As spreadsheets write it where the comma is the decimal sign, with a byte order mark.
@@ -116,11 +125,9 @@ TEST(CandidateFile, MayHaveSemicolonsAndDecimalCommas) {
   const Candidate german = candidate_of(
       "\xEF\xBB\xBF"
       "receiver;source;value\r\na;\"l;1\";0,25\r\nb;m;1,5E-05\r\n");
-  ASSERT_EQ(german.rows.size(), 2U);
-  EXPECT_EQ(german.rows[0].value, 0.25);
-  EXPECT_EQ(german.rows[1].value, 1.5e-5);
-  EXPECT_EQ(german.sources, (std::vector<std::string>{"l;1", "m"}));
-  EXPECT_EQ(candidate_of("receiver;value\na;0.25\n").rows.front().value, 0.25);
+  EXPECT_EQ(values_of(german), (std::vector<double>{0.25, 1.5e-5}));
+  EXPECT_EQ(texts_of(german, "source"), (std::vector<std::string>{"l;1", "m"}));
+  EXPECT_EQ(values_of(candidate_of("receiver;value\na;0.25\n")).front(), 0.25);
   EXPECT_EQ(truth_of("receiver;exact\na;0,5\n").rows.front().value, 0.5);
 }
 
@@ -135,16 +142,12 @@ TEST(CandidateFile, HasOneDecimalSign) {
 }
 
 TEST(CandidateFile, MayHoldValuesThatAreNoNumbers) {
-  const Candidate candidate =
-      candidate_of("receiver,value\na,nan\nb,-NaN\nc,inf\nd,-Infinity\ne,1e999\nf,-1e999\ng,1.#IND\n");
-  ASSERT_EQ(candidate.rows.size(), 7U);
-  EXPECT_TRUE(std::isnan(candidate.rows[0].value));
-  EXPECT_TRUE(std::isnan(candidate.rows[1].value));
-  EXPECT_EQ(candidate.rows[2].value, kInfinity);
-  EXPECT_EQ(candidate.rows[3].value, -kInfinity);
-  EXPECT_EQ(candidate.rows[4].value, kInfinity);
-  EXPECT_EQ(candidate.rows[5].value, -kInfinity);
-  EXPECT_TRUE(std::isnan(candidate.rows[6].value));
+  const std::vector<double> values =
+      values_of(candidate_of("receiver,value\na,nan\nb,-NaN\nc,inf\nd,-Infinity\ne,1e999\nf,-1e999\ng,1.#IND\n"));
+  ASSERT_EQ(values.size(), 7U);
+  for (const std::size_t i : {0, 1, 6}) EXPECT_TRUE(std::isnan(values[i])) << i;
+  EXPECT_EQ((std::vector(values.begin() + 2, values.begin() + 6)),
+            (std::vector{kInfinity, -kInfinity, kInfinity, -kInfinity}));
 }
 
 TEST(CandidateFile, IsRefusedWithEveryProblemAndItsLine) {
@@ -159,6 +162,184 @@ TEST(CandidateFile, IsRefusedWithEveryProblemAndItsLine) {
   EXPECT_HOLDS(complaint([] { (void)candidate_of("receiver,value\na,1\n", {.value = "ff"}); }), "no column 'ff'");
   EXPECT_HOLDS(complaint([] { (void)candidate_of("receiver,value\na,1\n", {.source = "s"}); }), "no column 's'");
   EXPECT_HOLDS(complaint([] { (void)candidate_of("value\n1\n", {}, MatchBy::kPosition); }), "no column 'x' among");
+}
+
+// --- Tables of exactff ---
+
+using table::Cell;
+using table::Table;
+using table::Type;
+
+// Radiosities of two patches; nothing is known of the last one.
+Table radiosities() {
+  Table made("radiosity", {},
+             {{.name = "patch", .type = Type::kText, .key = true},
+              {.name = "channel", .type = Type::kText, .key = true},
+              {.name = "radiosity"},
+              {.name = "lower"},
+              {.name = "upper"},
+              {.name = "irradiance"},
+              {.name = "irradiance_lower"},
+              {.name = "irradiance_upper"},
+              {.name = "claim", .type = Type::kText}});
+  using Row = std::vector<Cell>;
+  for (const Row& row : std::vector<Row>{{"a", "red", 0.5, 0.25, 0.75, 1.0, 0.5, 2.0, "estimated"},
+                                         {"a", "blue", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, "zero"},
+                                         {"b", "red", Cell(), 0.125, Cell(), Cell(), Cell(), Cell(), "no bound"}}) {
+    made.append(row);
+  }
+  return made;
+}
+
+class CheckOfTables : public testing::Test {
+ protected:
+  std::filesystem::path write(const Table& made, const std::string& name) const {
+    table::write(made, directory_.path() / name);
+    return directory_.path() / name;
+  }
+  const validation::TemporaryDirectory directory_;
+};
+
+TEST_F(CheckOfTables, RadiositiesAreJudgedByTheirBounds) {
+  for (const char* name : {"r.csv", "r.npz", "r.jsonl"}) {
+    SCOPED_TRACE(name);
+    const auto truth = write(radiosities(), name);
+    const auto mine = directory_.write("mine.csv", "patch,channel,value\nb,red,7\na,blue,0\na,red,1\n");
+    const Report report = compare(truth, mine, {.criteria = {.max_abs = 0.25}});
+    EXPECT_TRUE(report.passed());
+    EXPECT_EQ(report.column, "radiosity");
+    EXPECT_EQ(report.overall.absolute.max, 0.25);
+    EXPECT_EQ(report.not_certified, 1U);
+    EXPECT_EQ(report.worst.front().name, "patch 'a', channel 'red'");
+    EXPECT_EQ(read_truth(truth, "irradiance").rows[0].upper, 2.0);
+    EXPECT_HOLDS(complaint([&] { (void)compare(truth, directory_.write("m.csv", "patch,channel,value\nc,red,7\n")); }),
+                 "m.csv:2: the truth has no patch 'c' of channel 'red' (");
+  }
+}
+
+// Rows in any order, and matrices without names in the order of the table.
+TEST_F(CheckOfTables, RadiositiesAreComparedWithArraysOfNumbers) {
+  const auto truth = directory_.write("r.csv", table::csv_text(radiosities()) + "b,blue,0,0,0,0,0,0,zero\n");
+  EXPECT_EQ(compare(truth, directory_.write("grid.txt", "0.5 0\n7 0.125\n")).overall.absolute.max, 0.125);
+}
+
+TEST_F(CheckOfTables, OneFormatIsJudgedByAnother) {
+  Table truth("truth", {},
+              {{.name = "receiver", .type = Type::kText, .key = true},
+               {.name = "source", .type = Type::kText, .key = true},
+               {.name = "exact"},
+               {.name = "unoccluded"},
+               {.name = "status", .type = Type::kText}});
+  Table mine = truth;
+  for (int i = 0; i < 20; ++i) {
+    const std::string name = "r" + std::to_string(i);
+    truth.append(std::vector<Cell>{name, "light", 1.0 / (3 + i), 0.5, "certified"});
+    mine.append(std::vector<Cell>{name, "light", 1.0 / (3 + i) + (i == 7 ? 0.25 : 0.0), 0.5, "certified"});
+  }
+  const Report report = compare(write(truth, "t.npz"), write(mine, "m.jsonl"), {.criteria = {.max_abs = 0.125}});
+  EXPECT_FALSE(report.passed());
+  EXPECT_EQ(report.worst.front().receiver, "r7");
+  EXPECT_EQ(report.worst.front().line, 9U);
+  EXPECT_EQ(report.worst.front().truth_line, 8U);  // the row of an archive
+  EXPECT_TRUE(compare(write(truth, "t.npz"), write(mine, "m.jsonl"),
+                      {.truth_column = "unoccluded", .criteria = {.max_abs = 0.0}})
+                  .passed());
+}
+
+// A table of the future: three keys, a column of its own.
+TEST_F(CheckOfTables, AnyKeysAndColumnsWillDo) {
+  Table made("path", {},
+             {{.name = "from", .type = Type::kText, .key = true},
+              {.name = "via", .type = Type::kText, .key = true},
+              {.name = "to", .type = Type::kCount, .key = true},
+              {.name = "length", .strength = table::Strength::kEstimated}});
+  made.append(std::vector<Cell>{"a", "b", std::uint64_t{1}, 0.5});
+  made.append(std::vector<Cell>{"a", "c", std::uint64_t{1}, 0.25});
+  const auto truth = write(made, "p.jsonl");
+  const auto mine = directory_.write("mine.csv", "from,to,via,value\na,1,c,0.25\na,1,b,0.75\n");
+  const Report report = compare(truth, mine);
+  EXPECT_EQ(report.column, "length");
+  ASSERT_EQ(report.worst.size(), 1U);
+  EXPECT_EQ(report.worst.front().source, "b, 1");
+}
+
+// The order of a candidate's rows and columns changes nothing but its lines.
+TEST_F(CheckOfTables, AnyOrderOfRowsAndColumnsGivesTheSameReport) {
+  std::mt19937 random(2026);
+  std::string truth = "receiver,source,exact,largest_rho_b\n";
+  std::vector<std::array<std::string, 4>> rows;
+  for (int i = 0; i < 40; ++i) {
+    const std::string receiver = "r" + std::to_string(i / 2), source = i % 2 == 0 ? "s" : "t";
+    const double exact = static_cast<double>(random() % 1000) / 1000.0;
+    truth += receiver + ',' + source + ',' + text::shortest(exact) + ",2\n";
+    rows.push_back({receiver, source, text::shortest(exact + static_cast<double>(random() % 100) * 1e-5), "x"});
+  }
+  const auto truth_file = directory_.write("t.csv", truth);
+  const Options options{.criteria = {.max_abs = 5e-4, .rms = 1e-4, .quantiles = {{0.9, 1e-4}}, .per_source = true}};
+  std::vector<std::size_t> columns = {0, 1, 2, 3};
+  const std::array<std::string, 4> names = {"receiver", "source", "value", "note"};
+  std::set<std::string> reports;
+  for (int trial = 0; trial < 20; ++trial) {
+    std::ranges::shuffle(rows, random);
+    std::ranges::shuffle(columns, random);
+    const auto line = [&](const std::array<std::string, 4>& fields) {
+      std::string all;
+      for (const std::size_t i : columns) all += (all.empty() ? "" : ",") + fields[i];
+      return all + '\n';
+    };
+    std::string mine = line(names);
+    for (const auto& row : rows) mine += line(row);
+    Report report = compare(truth_file, directory_.write("mine.csv", mine), options);
+    for (RowError& row : report.worst) row.line = 0;
+    for (Verdict& verdict : report.verdicts) {
+      if (verdict.worst) verdict.worst->line = 0;
+    }
+    reports.insert(json_text(report));
+  }
+  EXPECT_EQ(reports.size(), 1U);
+}
+
+// --- Scoreboards ---
+
+TEST_F(CheckOfTables, AScoreboardHasARowForEachProgram) {
+  const auto truth = directory_.write("t.csv", "receiver,exact\na,0.5\nb,0.25\nc,0\n");
+  const std::vector<std::filesystem::path> files = {
+      directory_.write("right.csv", "receiver,value\na,0.5\nb,0.25\nc,0\n"),
+      directory_.write("wr|ng.csv", "receiver,value\na,0.505\nb,nan\nc,0\n")};
+  Scoreboard board = scoreboard(truth, files, {.criteria = {.max_abs = 1e-3, .rms = 0.1}});
+  board.scores[1].seconds = 1.5;
+  EXPECT_TRUE(board.scores[0].report.passed());
+  EXPECT_FALSE(board.scores[1].report.passed());
+  EXPECT_NEAR(digits_of(board.scores[1].report.overall.relative.max), 2.0, 1e-12);
+  const std::string lines = markdown(board);
+  EXPECT_HOLDS(lines, "| right   | passed |   3 of 3 |");
+  EXPECT_HOLDS(lines, "| wr\\|ng  | FAILED |   2 of 3 |");
+  const auto folder = directory_.path() / "board";
+  check::write(board, folder);
+  check::write(board, folder);  // replaces its own
+  const auto json = nlohmann::json::parse(validation::text_of(folder / "scoreboard.json"));
+  EXPECT_EQ(json["programs"][1]["answered"], 2);
+  EXPECT_EQ(json["programs"][1]["limits_kept"], 1);
+  EXPECT_EQ(json["programs"][1]["seconds"], 1.5);
+  EXPECT_EQ(json["programs"][0]["digits"]["worst"], kMostDigits);
+  const std::string page = validation::text_of(folder / "index.html");
+  EXPECT_HOLDS(page, "Every limit is kept by 1 of 2 programs.");
+  EXPECT_HOLDS(page, "receiver 'b': exact 0.25, found nan");
+  EXPECT_HOLDS(validation::text_of(folder / "junit.xml"), "name=\"exactff check\" tests=\"6\" failures=\"2\"");
+  std::filesystem::create_directory(directory_.path() / "other");
+  (void)directory_.write("other/mine.txt", "keep");
+  EXPECT_HOLDS(complaint([&] { check::write(board, directory_.path() / "other"); }), "which exactff did not write");
+}
+
+TEST_F(CheckOfTables, AScoreboardTellsTheProblemsOfAllCandidates) {
+  const auto truth = directory_.write("t.csv", "receiver,exact\na,0.5\n");
+  const std::vector<std::filesystem::path> files = {directory_.write("a.csv", "receiver,value\nb,0.5\n"),
+                                                    directory_.write("b.csv", "receiver,value\na,x\n")};
+  const std::string what = complaint([&] { (void)scoreboard(truth, files); });
+  EXPECT_HOLDS(what, "a.csv:2: the truth has no receiver 'b'");
+  EXPECT_HOLDS(what, "b.csv:2: 'x' is not a number");
+  const std::vector<std::filesystem::path> same = {"x/mine.csv", "y/mine.csv", "other.csv"};
+  EXPECT_EQ(program_names(same), (std::vector<std::string>{"x/mine.csv", "y/mine.csv", "other"}));
 }
 
 }  // namespace

@@ -6,10 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "check/github.h"
-#include "check/histogram.h"
-#include "check/json.h"
-#include "check/junit.h"
+#include "check/report.h"
 #include "exactff/check.h"
 #include "page/gnuplot.h"
 #include "support/holds.h"

@@ -29,7 +29,13 @@ inline Truth truth_of(const std::string& text, const std::string& column = "exac
 inline Candidate candidate_of(const std::string& text, const CandidateColumns& columns = {},
                               MatchBy by = MatchBy::kReceiver) {
   const validation::TemporaryDirectory directory;
-  return read_candidate(directory.write("mine.csv", text), columns, by);
+  return read_candidate(directory.write("mine.csv", text), {}, columns, by);
+}
+inline std::vector<double> values_of(const Candidate& candidate) {
+  return candidate.table.numbers(*candidate.table.column("value"));
+}
+inline std::vector<std::string> texts_of(const Candidate& candidate, const std::string& column) {
+  return candidate.table.texts(*candidate.table.column(column));
 }
 
 inline TruthRow row_of(const std::string& receiver, double value, std::uint32_t source = 0) {

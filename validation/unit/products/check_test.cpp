@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "check/histogram.h"
+#include "check/report.h"
 #include "support/complaint.h"
 #include "unit/products/check_support.h"
 

@@ -33,7 +33,8 @@ except ImportError as error:
     ) from error
 
 from . import methods
-from ._check import CheckReport, Distribution, Improvement, RowError, Verdict, check
+from ._check import (CheckReport, Distribution, Improvement, RowError, Scoreboard, Verdict, check,
+                     scoreboard)
 from ._errors import InputError, ModellingWarning, Problem
 from ._pair import DerivativeStatus, Drawing, Enclosure, FormFactor, FormFactors, Gradient, Status, VertexGradient
 from ._radiosity import Balance, Radiosity, radiosity
@@ -50,6 +51,7 @@ __all__ = [
     "Balance", "CheckReport", "Contact", "DerivativeStatus", "Distribution", "Drawing", "Enclosure", "Finding", "FormFactor",
     "FormFactors", "Gradient", "Improvement", "InputError", "Material", "ModellingWarning", "PairOfPatches", "Patch", "Problem", "Radiosity", "Receivers",
     "Reciprocity", "Report", "RowError",
-    "Scene", "SeenPatch", "Share", "Status", "TruthSummary", "Verdict", "VertexGradient", "View", "ViewFactor", "ViewFactorMatrix",
-    "__version__", "check", "methods", "radiosity", "truth", "view", "view_factor", "view_factor_matrix",
+    "Scene", "Scoreboard", "SeenPatch", "Share", "Status", "TruthSummary", "Verdict", "VertexGradient", "View", "ViewFactor", "ViewFactorMatrix",
+    "__version__", "check", "methods", "radiosity", "scoreboard", "truth", "view", "view_factor",
+    "view_factor_matrix",
 ]

@@ -99,7 +99,7 @@ class CheckReport:
 def check(truth: Union[_Path, FormFactors, ArrayLike], values: Union[_Path, ArrayLike], *,
           max_abs: Optional[float] = None, max_rel: Optional[float] = None, rms: Optional[float] = None,
           eps_b: Optional[float] = None, quantiles: Optional[Mapping[float, float]] = None, per_source: bool = False,
-          relative_floor: float = 0.0, worst: int = 10, truth_column: str = "exact", value_column: str = "",
+          relative_floor: float = 0.0, worst: int = 10, truth_column: str = "", value_column: str = "",
           match: Literal["receiver", "position"] = "receiver", tolerance: float = 0.0, partial: bool = False,
           receivers: Union[Receivers, Sequence[str]] = (), baseline: Optional[_Path] = None,
           write_baseline: Optional[_Path] = None, slack: float = 1e-9, junit: Optional[_Path] = None) -> CheckReport:
@@ -107,8 +107,9 @@ def check(truth: Union[_Path, FormFactors, ArrayLike], values: Union[_Path, Arra
 
     Parameters
     ----------
-    truth : a truth file; or the result of :meth:`Scene.form_factors`, best with ``full=True``
-    values : a CSV file (only with a truth file), matched by receiver or by position; or an array: for a truth file one
+    truth : a truth file, or another table that exactff wrote; or the result of :meth:`Scene.form_factors`, best with ``full=True``
+    values : a file of any kind that ``exactff check`` reads (only with a truth file), matched by receiver or by
+        position; or an array: for a truth file one
         value for each row, in order; otherwise of the same shape. NaN and infinite values count as failures.
     max_abs, max_rel, rms : limits of the errors; an error equal to its limit passes
     eps_b : limit of the error in radiosity, the error times the largest rho B; needs a truth file
@@ -125,16 +126,12 @@ def check(truth: Union[_Path, FormFactors, ArrayLike], values: Union[_Path, Arra
     Without any limit only finiteness is checked. Raises InputError for files, arrays and limits that cannot be used.
     Errors of values that are not certified are measured from the nearest point of their enclosure.
     """
-    if match not in ("receiver", "position"):
-        refuse(f"match is {match!r}", "", "choose 'receiver' or 'position'")
     read = [one for one in (truth, values) if isinstance(one, (str, os.PathLike))]
     for file, others in ((write_baseline, read), (junit, [*read, *([] if baseline is None else [baseline])])):
         if file is not None:
             require_free(file, "replace", others)
-    limits = _exactff.Limits()
-    limits.max_abs, limits.max_rel, limits.rms, limits.eps_b = max_abs, max_rel, rms, eps_b
-    limits.quantiles = list((quantiles or {}).items())
-    limits.per_source, limits.relative_floor, limits.worst = per_source, relative_floor, worst
+    limits = _limits(max_abs, max_rel, rms, eps_b, quantiles, per_source, relative_floor, worst)
+    matching = _matching(truth_column, value_column, match, tolerance, partial)
     files = _exactff.CheckFiles()
     files.baseline, files.write_baseline, files.slack, files.junit = baseline, write_baseline, slack, junit
     names = list(receivers.ids if isinstance(receivers, Receivers) else receivers)
@@ -143,10 +140,73 @@ def check(truth: Union[_Path, FormFactors, ArrayLike], values: Union[_Path, Arra
     if names:
         refuse("receivers is given with a truth file", "its rows name their receivers", "leave it out")
     if isinstance(values, (str, os.PathLike)):
-        return _report(_exactff.check_files(os.fspath(truth), os.fspath(values), truth_column, value_column,
-                                            match == "position", tolerance, partial, limits, files))
+        return _report(_exactff.check_files(os.fspath(truth), os.fspath(values), matching, limits, files))
     return _report(_exactff.check_values(os.fspath(truth), np.ascontiguousarray(_any_numbers(values)).ravel(),
                                          truth_column, limits, files))
+
+
+@dataclass(frozen=True, repr=False)
+class Scoreboard:
+    """The result of :func:`scoreboard`. ``bool(board)`` tells whether every program passed."""
+
+    reports: Mapping[str, CheckReport]  #: by the program's name, in the order of the candidates
+    seconds: Mapping[str, float]  #: as they were given
+    markdown: str  #: a table with a row for each program
+
+    def __bool__(self) -> bool:
+        return all(self.reports.values())
+
+    def __repr__(self) -> str:
+        passed = sum(map(bool, self.reports.values()))
+        return f"<exactff.Scoreboard: {passed} of {len(self.reports)} passed>"
+
+
+def scoreboard(truth: _Path, candidates: Sequence[_Path], *, folder: Optional[_Path] = None,
+               seconds: Optional[Mapping[str, float]] = None, max_abs: Optional[float] = None,
+               max_rel: Optional[float] = None, rms: Optional[float] = None, eps_b: Optional[float] = None,
+               quantiles: Optional[Mapping[float, float]] = None, per_source: bool = False,
+               relative_floor: float = 0.0, worst: int = 10, truth_column: str = "", value_column: str = "",
+               match: Literal["receiver", "position"] = "receiver", tolerance: float = 0.0,
+               partial: bool = False) -> Scoreboard:
+    """Compares the files of several programs with one truth: a row for each program, named by its file.
+
+    folder : where index.html, scoreboard.json and junit.xml are written; it appears complete or not at all
+    seconds : the times of programs by name, ``{"mine": 3.2}``
+    The other parameters are those of :func:`check`.
+    """
+    paths = [os.fspath(one) for one in candidates]
+    names = _exactff.program_names(paths)
+    times = dict(seconds or {})
+    for name in times:
+        if name not in names:
+            refuse(f"seconds names {name!r}", "there is no such program", f"the programs are {', '.join(names)}")
+    if not paths:
+        refuse("there are no candidates", "a scoreboard has a row for each", "give their files")
+    limits = _limits(max_abs, max_rel, rms, eps_b, quantiles, per_source, relative_floor, worst)
+    matching = _matching(truth_column, value_column, match, tolerance, partial)
+    markdown, programs = _exactff.scoreboard(os.fspath(truth), paths, matching, limits, [times.get(n) for n in names],
+                                             None if folder is None else os.fspath(folder))
+    return Scoreboard({name: _report(report) for name, _, report in programs}, times, markdown)
+
+
+def _limits(max_abs: Optional[float], max_rel: Optional[float], rms: Optional[float], eps_b: Optional[float],
+            quantiles: Optional[Mapping[float, float]], per_source: bool, relative_floor: float,
+            worst: int) -> _exactff.Limits:
+    limits = _exactff.Limits()
+    limits.max_abs, limits.max_rel, limits.rms, limits.eps_b = max_abs, max_rel, rms, eps_b
+    limits.quantiles = list((quantiles or {}).items())
+    limits.per_source, limits.relative_floor, limits.worst = per_source, relative_floor, worst
+    return limits
+
+
+def _matching(truth_column: str, value_column: str, match: str, tolerance: float,
+              partial: bool) -> _exactff.Matching:
+    if match not in ("receiver", "position"):
+        refuse(f"match is {match!r}", "", "choose 'receiver' or 'position'")
+    matching = _exactff.Matching()
+    matching.truth_column, matching.value_column, matching.by_position = truth_column, value_column, match == "position"
+    matching.tolerance, matching.partial = tolerance, partial
+    return matching
 
 
 def _any_numbers(values: Any) -> Any:

@@ -175,8 +175,19 @@ def estimates(method: str, scene: Scene, points: _Floats, normals: _Floats, on: 
 def write_truth(scene: Scene, scene_name: str, receivers: ReceiverList, receivers_name: str, sources: Sequence[str],
                 file: _Path, existing: str, columns: Sequence[str], threads: int,
                 progress: _Tell) -> tuple[int, list[int], int, float]: ...
-def check_files(truth: _Path, candidate: _Path, truth_column: str, value_column: str, by_position: bool,
-                tolerance: float, partial: bool, limits: Limits, files: CheckFiles) -> tuple[Any, ...]: ...
+class Matching:
+    truth_column: str
+    value_column: str
+    by_position: bool
+    partial: bool
+    tolerance: float
+
+
+def check_files(truth: _Path, candidate: _Path, matching: Matching, limits: Limits,
+                files: CheckFiles) -> tuple[Any, ...]: ...
+def scoreboard(truth: _Path, candidates: Sequence[_Path], matching: Matching, limits: Limits,
+               seconds: Sequence[Optional[float]], folder: Optional[_Path]) -> tuple[str, list[tuple[Any, ...]]]: ...
+def program_names(candidates: Sequence[_Path]) -> list[str]: ...
 def check_values(
     truth: _Path, values: _Floats, truth_column: str, limits: Limits, files: CheckFiles
 ) -> tuple[Any, ...]: ...

@@ -1,0 +1,233 @@
+// Several programs held against one truth: a page, JSON, JUnit XML and a table in Markdown.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "check/report.h"
+#include "files/file.h"
+#include "kernel/float_environment.h"
+#include "page/gnuplot.h"
+#include "page/output_folder.h"
+#include "page/page_text.h"
+#include "text/escape.h"
+#include "text/json_document.h"
+#include "text/phrases.h"
+
+namespace exactff::check {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::size_t answered(const Report& report) { return report.overall.rows - report.overall.not_finite; }
+std::size_t limits_kept(const Report& report) {
+  const auto kept = std::ranges::count_if(report.verdicts, [](const Verdict& verdict) { return verdict.passed; });
+  return static_cast<std::size_t>(kept);
+}
+
+constexpr std::array kHeadings = {"program", "result", "answered",       "worst error",   "RMS",         "median",
+                                  "90 %",    "99 %",   "digits, median", "digits, worst", "limits kept", "time"};
+
+// Without an error, all digits are right; without an answer, there is nothing to say.
+std::vector<std::string> cells_of(const Score& score) {
+  const Report& report = score.report;
+  const Distribution& errors = report.overall.absolute;
+  const bool none = answered(report) == 0;
+  const auto error = [&](double value) { return none ? "" : text::short_number(value, 2); };
+  const auto digits = [&](double relative) -> std::string {
+    const double value = digits_of(relative);
+    return none ? "" : value == kMostDigits ? "all" : text::short_number(std::floor(10.0 * value) / 10.0);
+  };
+  const auto of = [](std::size_t part, std::size_t whole) {
+    return std::to_string(part) + " of " + std::to_string(whole);
+  };
+  return {score.program,
+          report.passed() ? "passed" : "FAILED",
+          of(answered(report), report.truth_rows),
+          error(errors.max),
+          error(errors.rms),
+          error(errors.median),
+          error(errors.p90),
+          error(errors.p99),
+          digits(report.overall.relative.median),
+          digits(report.overall.relative.max),
+          of(limits_kept(report), report.verdicts.size()),
+          score.seconds ? text::duration(*score.seconds) : ""};
+}
+
+// The last column is there only if a time was given.
+std::size_t columns_of(const Scoreboard& board) {
+  const bool timed = std::ranges::any_of(board.scores, [](const Score& score) { return score.seconds.has_value(); });
+  return kHeadings.size() - (timed ? 0 : 1);
+}
+
+std::string html_table(const Scoreboard& board) {
+  using page::HtmlTable;
+  const auto kind = [](std::size_t i) { return i < 2 ? HtmlTable::CellKind::kText : HtmlTable::CellKind::kNumber; };
+  HtmlTable table(HtmlTable::Shape::kWide);
+  const std::size_t columns = columns_of(board);
+  for (std::size_t i = 0; i < columns; ++i) table.column(kHeadings[i], kind(i));
+  for (const Score& score : board.scores) {
+    table.row(score.report.passed() ? "" : "base");  // marked
+    const std::vector<std::string> cells = cells_of(score);
+    for (std::size_t i = 0; i < columns; ++i) table.cell(page::prose(text::html(cells[i])), kind(i));
+  }
+  return table.text() + '\n';
+}
+
+std::string list_of(const std::vector<std::string>& lines) {
+  std::string items;
+  for (const std::string& line : lines) items += "<li>" + page::prose(text::html(line)) + "</li>\n";
+  return items.empty() ? items : "<ul>\n" + items + "</ul>\n";
+}
+
+// Broken limits, the worst rows, and what else is to be known of a program.
+std::string details_of(const Score& score) {
+  const Report& report = score.report;
+  std::vector<std::string> broken, rows;
+  for (const Verdict& verdict : report.verdicts) {
+    if (!verdict.passed) broken.push_back(sentence(verdict));
+  }
+  for (const RowError& row : report.worst) rows.push_back(row.name + ": " + describe(row));
+  std::vector<std::string> known = report.matrix ? sentences(*report.matrix) : std::vector<std::string>();
+  for (const std::string& warning : warnings(report)) known.push_back(warning);
+  const auto part = [](const std::string& title, const std::vector<std::string>& lines) {
+    return lines.empty() ? "" : page::paragraph(title) + list_of(lines);
+  };
+  return page::fold(text::html(score.program) + ": " +
+                        (report.passed() ? "passed" : text::counted(broken.size(), "limit") + " exceeded"),
+                    page::paragraph("File: <code>" + text::html(report.candidate_file) + "</code>") +
+                        part("Limits that are exceeded:", broken) +
+                        part("Worst rows by " + std::string(to_string(report.worst_by)) + ":", rows) +
+                        part("Also:", known));
+}
+
+std::string page_of(const Scoreboard& board) {
+  const Report& first = board.scores.front().report;
+  std::size_t passed = 0;
+  for (const Score& score : board.scores) passed += score.report.passed() ? 1 : 0;
+  std::vector<std::string> limits;
+  for (const Verdict& verdict : first.verdicts) {
+    if (verdict.criterion != "finite") limits.push_back(name_of(verdict) + " at most " + text::shortest(verdict.limit));
+  }
+  std::string text = page::page_head("Scoreboard");
+  text += "<h1>Scoreboard</h1>\n<p class=\"subtitle\">" + text::counted(board.scores.size(), "program") +
+          " against true values of " + text::html(text::program_version()) + "</p>\n<p class=\"verdict\">" +
+          (passed == board.scores.size()
+               ? std::string(passed == 1 ? "The program keeps" : "All programs keep") + " every limit."
+               : "Every limit is kept by " + std::to_string(passed) + " of " +
+                     text::counted(board.scores.size(), "program") + ".") +
+          "</p>\n";
+  text += page::facts_table(
+      {{"truth", "<code>" + text::html(first.truth_file) + "</code>"},
+       {"judged", "column <code>" + text::html(first.column) + "</code>, " + text::counted(first.truth_rows, "case")},
+       {"limits", limits.empty() ? "none but that every value is a finite number"
+                                 : text::html(text::enumerate(limits)) + "; every value is a finite number"}});
+  text += page::heading("Results") + html_table(board) +
+          page::paragraph(
+              "Errors are absolute: the distance from the true value, or from its bounds where it is not "
+              "certified. <i>90 %</i>: nine of ten answers are at most that far off. <i>Digits</i> are "
+              "correct decimal digits, by the relative error.");
+  const Plot picture = plot(shares_script(board));
+  if (!picture.svg.empty()) {
+    text += "<div class=\"figures\"><figure id=\"errors\">\n" +
+            page::inline_svg(picture.svg, "errors", "How large errors are") +
+            "\n<figcaption>How many of all cases have an error of at most x. A higher line is better. Errors of 0 "
+            "count, but cannot be drawn.</figcaption>\n</figure></div>\n";
+  } else {
+    text += page::paragraph(text::html("There is no figure: " + picture.why_not + "."));
+  }
+  text += page::heading("Each program");
+  for (const Score& score : board.scores) text += details_of(score);
+  return text + page::page_end();
+}
+
+std::string json_text(const Scoreboard& board) {
+  const Report& first = board.scores.front().report;
+  ordered_json json;
+  json["program"] = text::program_version();
+  json["truth"] = {{"file", first.truth_file}, {"column", first.column}, {"rows", first.truth_rows}};
+  json["programs"] = ordered_json::array();
+  for (const Score& score : board.scores) {
+    const Report& report = score.report;
+    ordered_json one = {
+        {"name", score.program},
+        {"passed", report.passed()},
+        {"cases", report.truth_rows},
+        {"answered", answered(report)},
+        {"errors", json_of(report.overall.absolute)},
+        {"digits",
+         {{"median", digits_of(report.overall.relative.median)}, {"worst", digits_of(report.overall.relative.max)}}},
+        {"limits", report.verdicts.size()},
+        {"limits_kept", limits_kept(report)}};
+    if (score.seconds) one["seconds"] = json_number(*score.seconds);
+    one["report"] = json_of(report);
+    json["programs"].push_back(std::move(one));
+  }
+  return text::json_document(json) + '\n';
+}
+
+}  // namespace
+
+double digits_of(double relative_error) {
+  return relative_error == 0.0 ? kMostDigits : std::clamp(-std::log10(relative_error), 0.0, kMostDigits);
+}
+
+std::vector<std::string> program_names(std::span<const std::filesystem::path> candidates) {
+  std::map<std::string, int> uses;
+  for (const std::filesystem::path& file : candidates) ++uses[file.stem().string()];
+  std::vector<std::string> names;
+  for (const std::filesystem::path& file : candidates) {
+    names.push_back(uses[file.stem().string()] == 1 ? file.stem().string() : file.string());
+  }
+  return names;
+}
+
+Scoreboard scoreboard(const std::filesystem::path& truth, std::span<const std::filesystem::path> candidates,
+                      const Options& options) {
+  std::vector<Report> reports = compare_all(truth, candidates, options);
+  const std::vector<std::string> names = program_names(candidates);
+  Scoreboard board;
+  for (std::size_t i = 0; i < reports.size(); ++i) board.scores.push_back({names[i], {}, std::move(reports[i])});
+  return board;
+}
+
+std::string markdown(const Scoreboard& board) {
+  const kernel::StandardArithmetic arithmetic;
+  const std::size_t columns = columns_of(board);
+  std::vector<std::vector<std::string>> rows = {{kHeadings.begin(), kHeadings.end()}, {}};
+  for (std::size_t i = 0; i < columns; ++i) rows[1].emplace_back(i < 2 ? "---" : "--:");
+  for (const Score& score : board.scores) rows.push_back(cells_of(score));
+  std::string text;
+  for (std::vector<std::string>& row : rows) {
+    text += '|';
+    for (std::size_t i = 0; i < columns; ++i) {
+      std::string cell = text::printable(row[i]);
+      text::replace_all(cell, "|", "\\|");
+      std::size_t width = 3;
+      for (const std::vector<std::string>& other : rows) width = std::max(width, other[i].size());
+      const std::string blanks(width > cell.size() ? width - cell.size() : 0, &row == &rows[1] ? '-' : ' ');
+      text += ' ' + (i < 2 ? cell + blanks : blanks + cell) + " |";
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+void write(const Scoreboard& board, const std::filesystem::path& folder) {
+  const kernel::StandardArithmetic arithmetic;
+  page::StagedFolder staged(folder);
+  const auto put = [&](const char* name, const std::string& text) {
+    files::WholeFile file(staged.path() / name);
+    file.append(text);
+    file.commit();
+  };
+  std::vector<Report> reports;
+  for (const Score& score : board.scores) reports.push_back(score.report);
+  put(page::kScoreFile, json_text(board));
+  put("junit.xml", junit_xml(reports));
+  put("index.html", page_of(board));
+  staged.commit();
+}
+
+}  // namespace exactff::check
