@@ -191,23 +191,6 @@ TEST(FirstFace, AgreesWithASearchInRationalsOnModels) {
   compare_pictures(models::make_scene("lattice:n=60"), {0, 0, 0}, 300);
 }
 
-// Two squares, the higher index first along the ray where they do not cross.
-TEST(FirstFace, TiesGoToTheLowestIndex) {
-  generate::PlainScene plain;
-  for (const char* name : {"a", "b", "c"}) {
-    plain.add_ring(plain.patch(name), {{-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}});
-  }
-  plain.add_ring(plain.patch("piercing"), {{0, -1, 1}, {0, 1, 1}, {0.5, 1, 3}, {0.5, -1, 3}});
-  const Scene scene = generate::build(plain);
-  EXPECT_EQ(render::first_hit(scene, {{0.75, 0, 0}, {0, 0, 1}})->face, FaceId{0});
-  EXPECT_EQ(render::first_hit(scene, {{0.75, 0, 4}, {0, 0, -1}})->face, FaceId{0});
-  EXPECT_EQ(render::first_hit(scene, {{0.125, 0, 0}, {0, 0, 1}})->face, FaceId{3});
-  EXPECT_EQ(render::first_hit(scene, {{0.25, 0, 0}, {0, 0, 1}})->face, FaceId{3});  // pierces backs, shows its front
-  EXPECT_EQ(render::first_hit(scene, {{0.75, 0, 2}, {0, 0, 1}}), std::nullopt);     // begins on the stack
-  EXPECT_EQ(render::first_hit(scene, {{-5, 0, 2}, {1, 0, 0}})->face, FaceId{3});    // the stack is edge-on
-  EXPECT_EQ(render::first_hit(scene, {{1, 1, 0}, {0, 0, 1}})->face, FaceId{0});     // through a corner
-}
-
 // A thin lamp: each side shows the face that looks to it, whichever comes first.
 TEST(FirstFace, OfCoincidentFacesIsAFront) {
   const std::vector<Vec3> up = {{-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}}, down(up.rbegin(), up.rend());

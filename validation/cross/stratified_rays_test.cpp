@@ -161,11 +161,6 @@ TEST(Pictures, AgreeWithRaysBehindABlind) {
           {.eye = {3.8, 2.2, 4.8}, .look = {1.5, 0.8, 1}, .fov = 60});
 }
 
-TEST(Pictures, AgreeWithRaysUnderLeaves) {
-  compare(models::make_scene("forest:n=150,trees=2"),
-          {.eye = {5, 5, 1.5}, .look = {20, 20, 0}, .up = {0, 0, 1}, .fov = 60});
-}
-
 TEST(Pictures, AgreeWithRaysInSunlight) {
   compare(models::make_scene("forest:n=150,trees=2,light=sun"),
           {.eye = {5, 5, 1.5}, .look = {20, 20, 0}, .up = {0, 0, 1}, .fov = 60});

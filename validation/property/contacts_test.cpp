@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -343,19 +342,6 @@ bool is_buried(const Scene& scene, const std::string& name) {
 }
 std::string face_of(const std::string& patch, int number) { return patch + ':' + std::to_string(number); }
 
-TEST(BuriedFaces, AreBothSidesOfTheContactOfEqualBoxes) {
-  for (const bool shares : {false, true}) {
-    Builder made(shares);
-    made.add_box("lower", {0, 0, 0}, {1, 1, 1});
-    made.add_box("upper", {0, 0, 1}, {1, 1, 2});
-    const Scene scene = made.builder.build();
-    EXPECT_TRUE(is_buried(scene, face_of("lower", kTop)));
-    EXPECT_TRUE(is_buried(scene, face_of("upper", kBottom)));
-    EXPECT_FALSE(is_buried(scene, face_of("lower", kBottom)));
-    EXPECT_FALSE(is_buried(scene, face_of("upper", kTop)));
-  }
-}
-
 TEST(BuriedFaces, AreThreeSidesOfABoxInTheCornerOfARoom) {
   for (const bool shares : {false, true}) {
     Builder made(shares);
@@ -368,16 +354,6 @@ TEST(BuriedFaces, AreThreeSidesOfABoxInTheCornerOfARoom) {
     EXPECT_TRUE(buried_under(scene, {{0.5, 0.5, 0}, {0, 0, 1}, {scene.faces_of(scene.select("room"))[0]}, {}}));
     EXPECT_FALSE(buried_under(scene, {{1.5, 0.5, 0}, {0, 0, 1}, {scene.faces_of(scene.select("room"))[0]}, {}}));
   }
-}
-
-TEST(BuriedFaces, AreTheFloorUnderABoxButNotItsBottomOnASheet) {
-  Builder made;
-  made.add_face("floor", {{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
-  made.add_box("box", {-1, -1, 0}, {1, 1, 1});
-  const Scene scene = made.builder.build();
-  EXPECT_TRUE(is_buried(scene, "floor:1"));
-  EXPECT_FALSE(is_buried(scene, face_of("box", kBottom)));
-  EXPECT_FALSE(some_is_buried(scene.with_transparent(std::vector{scene.select("box:4")})));
 }
 
 TEST(BuriedFaces, AreNotThePartyWallsOfRooms) {
@@ -400,19 +376,6 @@ TEST(BuriedFaces, AreNotTheSidesOfASheetOrOfATwoSidedRoom) {
   EXPECT_FALSE(some_is_buried(matrix::with_two_sided(room, std::vector{room.select("room")})));
   for (int face = 1; face <= 6; ++face) {
     EXPECT_FALSE(some_is_buried(matrix::with_two_sided(room, std::vector{room.select(face_of("room", face))})));
-  }
-}
-
-TEST(BuriedFaces, OfFurnitureAreTheSameInATwoSidedRoom) {
-  Builder made;
-  made.add_box("room", {0, 0, 0}, {4, 4, 3}, Fronts::kInside);
-  made.add_box("box", {1, 1, 0}, {2, 2, 1});
-  const Scene room = made.builder.build();
-  for (const std::string two_sided : {"room", "room:1", "box"}) {
-    const Scene scene = matrix::with_two_sided(room, std::vector{room.select(two_sided)});
-    EXPECT_TRUE(is_buried(scene, face_of("box", kBottom))) << two_sided;
-    const FaceId floor = scene.faces_of(scene.select("room")).front();
-    EXPECT_TRUE(buried_under(scene, {{1.5, 1.5, 0}, {0, 0, 1}, {floor}, {}})) << two_sided;
   }
 }
 

@@ -83,13 +83,6 @@ TEST(Enclosed, IsAThingInARoomAndNotOneOutside) {
   EXPECT_EQ(enclosed(apart), kWalls);
 }
 
-// Part of the thing looks into the room, part of it out.
-TEST(Enclosed, IsNoThingThatPiercesAWall) {
-  PlainScene plain = room();
-  add_thing(plain, box({3, 1, 0.5}, {6, 2, 1.5}));
-  EXPECT_EQ(enclosed(plain), kWalls);
-}
-
 // Its centre is inside, its tip outside.
 TEST(Enclosed, IsNoPatchThatPiercesAWall) {
   PlainScene plain = room();
@@ -121,19 +114,6 @@ TEST(Enclosed, IsEveryPatchOfView3DsClosedRooms) {
   for (const char* name : {"facet", "test4", "box345", "gunter1"}) {
     const Scene scene = read_scene(std::string(EXACTFF_DATA_DIR) + "/scenes/formats/" + name + ".vs3");
     EXPECT_EQ(enclosed(scene).size(), scene.patches().size()) << name;
-  }
-}
-
-TEST(Enclosed, SeesNoSkyAndSaysThatThisIsProved) {
-  const Scene scene = read_scene(EXACTFF_DATA_DIR "/scenes/formats/test4.vs3");
-  const std::vector<Selection> all = all_of(scene);
-  const matrix::Matrix computed = matrix::compute(scene, all, all, {.factors = {.accuracy = 1e-3}, .open = true});
-  for (std::size_t row = 0; row < all.size(); ++row) {
-    EXPECT_EQ(computed.open[row].claim, Claim::kZero);
-    EXPECT_EQ(computed.open[row].upper, 0.0);
-    EXPECT_EQ(computed.open[row].area_from, computed.factors.at(row, 0).area_from);
-    EXPECT_TRUE(computed.open[row].accurate);
-    EXPECT_EQ(computed.open[row].cells, 0U);
   }
 }
 

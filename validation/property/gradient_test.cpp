@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -243,13 +242,6 @@ TEST(Gradient, IsProvedZeroWhereEqualTermsCancel) {
   EXPECT_EQ(gradient.normal[0].status, DerivativeStatus::kZero);
 }
 
-TEST(Gradient, IsZeroWhereTheSourceIsSafelyHidden) {
-  const Scene scene = scene_of({kLight, {"wall", {{-2, 2, 1}, {2, 2, 1}, {2, -2, 1}, {-2, -2, 1}}}});
-  const Gradient gradient = *factor(scene, {0.1, 0, 0}).gradient;
-  EXPECT_FALSE(gradient.kink);
-  for (const Derivative& d : gradient.position) EXPECT_EQ(d.status, DerivativeStatus::kZero);
-}
-
 // A sheet that x sees edge-on bounds nothing, yet F falls on both sides.
 TEST(Gradient, ASheetInsideTheViewSeenEdgeOnIsAKink) {
   const Scene scene = scene_of({kLight, {"sheet", {{0, -.5, .5}, {0, .5, .5}, {0, .5, 1.5}, {0, -.5, 1.5}}}});
@@ -264,14 +256,6 @@ TEST(Gradient, ASheetInsideTheViewSeenEdgeOnIsAKink) {
   EXPECT_EQ(slope_along(scene, {}, {0, 1, 0}), 0.0);
 }
 
-// Behind another face it does not matter.
-TEST(Gradient, AHiddenSheetIsNoKink) {
-  const Scene scene = scene_of({kLight,
-                                {"sheet", {{0, -.1, 1}, {0, .1, 1}, {0, .1, 1.5}, {0, -.1, 1.5}}},
-                                {"cover", {{-.2, -.2, .5}, {.2, -.2, .5}, {.2, .2, .5}, {-.2, .2, .5}}}});
-  EXPECT_FALSE(factor(scene, {0, 0, 0}).gradient->kink);
-}
-
 // Two shadows that abut at different depths: a proved zero with a slope on one side.
 TEST(Gradient, AbuttingShadowsAreAKinkAlthoughFIsZero) {
   const Scene scene = scene_of({kLight,
@@ -284,14 +268,6 @@ TEST(Gradient, AbuttingShadowsAreAKinkAlthoughFIsZero) {
   const double left = slope_along(scene, {}, {-1, 0, 0}), right = slope_along(scene, {}, {1, 0, 0});
   EXPECT_EQ(std::min(left, right), 0.0);
   EXPECT_GT(std::max(left, right), 0.01);
-}
-
-// The same in one plane: a wall of two faces.
-TEST(Gradient, FacesWithACommonEdgeAreNoKink) {
-  const Scene scene = scene_of({kLight,
-                                {"left", {{-2, -2, 1}, {0, -2, 1}, {0, 2, 1}, {-2, 2, 1}}},
-                                {"right", {{0, -2, 1}, {1.25, -2, 1}, {1.25, 2, 1}, {0, 2, 1}}}});
-  EXPECT_FALSE(factor(scene, {0, 0, 0}).gradient->kink);
 }
 
 // A step: two faces and the riser between them, seen edge-on. Together they cover whatever x does.

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -313,15 +312,6 @@ TEST(VertexGradient, ACornerBetweenTwoFacesOfAWallMovesItsSides) {
   EXPECT_LT(middle->position[1].value, -0.01);
 }
 
-TEST(VertexGradient, ADiagonalMovesNothing) {
-  PlainScene plain = under_a_light();
-  generate::PlainPatch& wall = plain.patch("wall");
-  plain.add_ring(wall, {{-.25, -.25, 1}, {.25, -.25, 1}, {.25, .25, 1}, {-.25, .25, 1}, {-.125, 0, 1}});
-  const Gradient gradient = *solve_vertices(plain, Engine::kBoth).gradient;
-  EXPECT_EQ(gradient.vertices.size(), 9U);
-  for (const VertexDerivative& v : gradient.vertices) EXPECT_FALSE(v.is_kink);
-}
-
 // Three faces that abut without sharing all corners: the gap that opens is a kink, the outer corners move as ever.
 TEST(VertexGradient, ATJunctionIsAKinkForItsCorners) {
   PlainScene plain = under_a_light();
@@ -350,61 +340,12 @@ TEST(VertexGradient, WhatTouchesTheSourceIsAKinkThere) {
   EXPECT_FALSE(vertex_at(plain, gradient, {.5, .5, 1})->is_kink);
 }
 
-// The walls of a room share the edges of its ceiling: they only hide what is outside.
-TEST(VertexGradient, WallsAlongTheSourcesEdgesAreNoKinks) {
-  PlainScene plain = under_a_light();
-  plain.add_ring(plain.patch("wall"), {{-1, 1, 2}, {1, 1, 2}, {1, 1, 0}, {-1, 1, 0}});
-  plain.add_ring(plain.patch("ceiling"), {{1, 1, 2}, {3, 1, 2}, {3, -1, 2}, {1, -1, 2}});
-  const Gradient gradient = *solve_vertices(plain, Engine::kBoth).gradient;
-  ASSERT_EQ(gradient.vertices.size(), 4U);
-  for (const VertexDerivative& v : gradient.vertices) EXPECT_FALSE(v.is_kink);
-}
-
 TEST(VertexGradient, AFaceOverTheSourceIsAKinkAlthoughItHidesNothing) {
   PlainScene plain = under_a_light();
   plain.add_ring(plain.patch("over"), {{-2, -2, 2}, {2, -2, 2}, {2, 2, 2}, {-2, 2, 2}});
   const Gradient gradient = *solve_vertices(plain, Engine::kBoth).gradient;
   ASSERT_NE(vertex_at(plain, gradient, {2, 2, 2}), nullptr);
   EXPECT_TRUE(vertex_at(plain, gradient, {2, 2, 2})->is_kink);
-}
-
-// The border is where the plate pierces the source, and moves with both planes.
-TEST(VertexGradient, AFaceThatPiercesTheSourceMovesTheBorderWithBothPlanes) {
-  PlainScene plain = under_a_light();
-  plain.add_ring(plain.patch("plate"), {{-.5, .25, 3}, {.5, .25, 3}, {0, .5, 1}});
-  const Gradient gradient = *solve_vertices(plain, Engine::kBoth).gradient;
-  ASSERT_EQ(gradient.frames.size(), 1U);
-  EXPECT_EQ(gradient.vertices.size(), 7U);
-  for (const VertexDerivative& v : gradient.vertices) EXPECT_FALSE(v.is_kink);
-  EXPECT_NE(vertex_at(plain, gradient, {-.5, .25, 3})->position[1].value, 0.0);
-}
-
-TEST(VertexGradient, AddsOverSources) {
-  PlainScene plain;
-  plain.add_ring(plain.patch("left"), {{-1, 1, 2}, {0, 1, 2}, {0, -1, 2}, {-1, -1, 2}});
-  plain.add_ring(plain.patch("right"), {{0, 1, 2}, {1, 1, 2}, {1, -1, 2}, {0, -1, 2}});
-  plain.add_ring(plain.patch("post"), {{-.3, -.3, 1}, {.4, -.2, 1}, {.1, .5, 1.2}});
-  plain.point = {.1, .2, 0};
-  const auto of_post = [](const PlainScene& scene) {
-    const Gradient gradient = *solve_vertices(scene).gradient;
-    std::array<Three, 3> found;
-    constexpr std::array kCorners = {Vec3{-.3, -.3, 1}, Vec3{.4, -.2, 1}, Vec3{.1, .5, 1.2}};
-    for (std::size_t i = 0; i < 3; ++i) found[i] = balls(vertex_at(scene, gradient, kCorners[i])->position);
-    return found;
-  };
-  PlainScene whole = under_a_light();
-  plain.source = "left";
-  const std::array<Three, 3> left = of_post(plain);
-  plain.source = "right";
-  const std::array<Three, 3> right = of_post(plain);
-  whole.add_ring(whole.patch("post"), {{-.3, -.3, 1}, {.4, -.2, 1}, {.1, .5, 1.2}});
-  whole.point = plain.point;
-  const std::array<Three, 3> both = of_post(whole);
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      EXPECT_TRUE(holds_zero(left[i][axis] + right[i][axis] - both[i][axis])) << i << ' ' << axis;
-    }
-  }
 }
 
 }  // namespace

@@ -460,26 +460,6 @@ TEST(ViewFactors, BehindBoxesAreThoseOfBothDirections) {
   EXPECT_GE(judged, 20U);
 }
 
-// A box that stands on the floor: its base hides what lies under it, and its sides begin in the floor's plane.
-TEST(ViewFactors, ABoxOnTheFloorHidesTheFloorUnderIt) {
-  generate::PlainScene scene;
-  add_room(scene, box({0, 0, 0}, {4, 4, 4}));
-  add_thing(scene, box({1, 1, 0}, {2, 2, 1}));
-  const Scene built = generate::build(scene);
-  for (std::size_t i = 0; i < built.patches().size(); ++i) {
-    double lower = 0.0, upper = 0.0;
-    const Selection from = patch_of(built, i);
-    for (std::size_t j = 0; j < built.patches().size(); ++j) {
-      const ViewFactor f = view_factor(built, from, patch_of(built, j));
-      lower += f.lower;
-      upper += f.upper;
-    }
-    // Of the floor, a sixteenth lies under the box and sees nothing. So does the base, a sixth of the box.
-    EXPECT_LE(lower, 1.0);
-    EXPECT_GE(upper + 1e-12, built.patches()[i].name == "things" ? 5.0 / 6.0 : 15.0 / 16.0);
-  }
-}
-
 // Inner edges of a mesh are not looked at, its ridges are: whether faces share vertices must not matter.
 TEST(ViewFactors, BehindAMeshAreThoseBehindItsFaces) {
   enum class Vertices { kShared, kOfEachFace };

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes ten scenes as modelling programs export them, each with one slip, and one without.
+"""Writes five scenes as modelling programs export them, each with one slip, and one without.
 
 usage: exported_scenes.py FOLDER
 
@@ -36,9 +36,8 @@ def turned(face):
 class Obj:
     """Collects faces and writes them as OBJ, with `digits` decimals."""
 
-    def __init__(self, digits=None, group="g"):
+    def __init__(self, digits=None):
         self.digits = digits
-        self.group = group
         self.text = "mtllib scene.mtl\n"
         self.vertices = 0
 
@@ -46,7 +45,7 @@ class Obj:
         return repr(float(value)) if self.digits is None else "%.*f" % (self.digits, value)
 
     def add(self, patch, material, faces, normals=None):
-        self.text += "%s %s\nusemtl %s\n" % (self.group, patch, material)
+        self.text += "g %s\nusemtl %s\n" % (patch, material)
         for k, face in enumerate(faces):
             for corner in face:
                 self.text += "v %s\n" % " ".join(self.number(c) for c in corner)
@@ -65,13 +64,13 @@ def box():
     return [[BOX[i] for i in side] for side in SIDES]
 
 
-def room(obj, at=lambda p: p, floor=None, lamp=None, table=None, names=("floor", "lamp", "table")):
+def room(obj, at=lambda p: p, floor=None, lamp=None, table=None):
     def moved(faces):
         return [[at(p) for p in face] for face in faces]
 
-    obj.add(names[0], "paint", moved(floor or [FLOOR]))
-    obj.add(names[1], "lamp", moved(lamp or [LAMP]))
-    obj.add(names[2], "paint", moved(table or box()))
+    obj.add("floor", "paint", moved(floor or [FLOOR]))
+    obj.add("lamp", "lamp", moved(lamp or [LAMP]))
+    obj.add("table", "paint", moved(table or box()))
     return obj
 
 
@@ -86,16 +85,6 @@ def rotated(p):
     return (c * x - s * y + 10, s * x + c * y, z)
 
 
-def fan(face, cuts):
-    """`face` as triangles around an inner point, with `cuts` edges on each side."""
-    rim = []
-    for i, p in enumerate(face):
-        q = face[(i + 1) % len(face)]
-        rim += [tuple(a + (b - a) * k / cuts for a, b in zip(p, q)) for k in range(cuts)]
-    middle = (1.7, 1.3, 0)
-    return [[rim[i], rim[(i + 1) % len(rim)], middle] for i in range(len(rim))]
-
-
 def scenes():
     pane = [(0.5, 0.5, 2), (0.5, 2.5, 2), (3.5, 2.5, 2), (3.5, 0.5, 2)]
     room_of_normals = Obj()
@@ -106,16 +95,11 @@ def scenes():
     with_pane.add("pane", "glass", [pane])
     return {
         "clean": room(Obj()),
-        "triangles": room(Obj(), floor=triangles([FLOOR]), table=triangles(box())),
         "rotated": room(Obj(6), at=rotated, floor=triangles([FLOOR]), table=triangles(box())),
         "flipped": room(Obj(), lamp=[turned(LAMP)]),
-        "millimetres": room(Obj(), at=lambda p: tuple(10000 * c + 50000 for c in p)),
         "glass": with_pane,
-        "names": room(Obj(group="o"), names=("Grüner Boden", "große Lampe", "Tisch")),
-        "doubled": room(Obj(), floor=[FLOOR, FLOOR], lamp=[LAMP, LAMP]),
         "inverted": room(Obj(), table=[turned(face) for face in box()]),
         "normals": room_of_normals,
-        "fifty": room(Obj(), floor=fan(FLOOR, 13)),
     }
 
 

@@ -32,16 +32,6 @@ TEST(CsvLines, EndInAnyWay) {
   EXPECT_EQ(lines_of("\n"), List{""});
 }
 
-TEST(CsvLines, PassByteOrderMarkAtTheStartOnly) {
-  EXPECT_EQ(lines_of("\xEF\xBB\xBF"
-                     "a\n\xEF\xBB\xBF"
-                     "b"),
-            (List{"a",
-                  "\xEF\xBB\xBF"
-                  "b"}));
-  EXPECT_EQ(lines_of("\xEF\xBB\xBF"), List{});
-}
-
 // The file is read in blocks of 65536 bytes: here CR LF and a long line cross block borders.
 TEST(CsvLines, LieAcrossBlocks) {
   for (const std::size_t length : {65533U, 65534U, 65535U, 65536U, 65537U, 200000U}) {
@@ -94,14 +84,6 @@ TEST(CsvFields, AreRefusedWhereQuotesDoNotMatch) {
   EXPECT_EQ(fields_of("\"a"), List{"refused"});
   EXPECT_EQ(fields_of("\"a\"b,c"), List{"refused"});
   EXPECT_EQ(fields_of("a,\""), List{"refused"});
-}
-
-TEST(CsvComments, AreBlankOrBeginWithANumberSign) {
-  EXPECT_TRUE(text::is_csv_comment(""));
-  EXPECT_TRUE(text::is_csv_comment(" \t"));
-  EXPECT_TRUE(text::is_csv_comment("  # x"));
-  EXPECT_FALSE(text::is_csv_comment("a # x"));
-  EXPECT_FALSE(text::is_csv_comment("\"#\""));
 }
 
 // --- commas or semicolons ---

@@ -4,8 +4,6 @@
 #include <acb.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -152,32 +150,6 @@ TEST_F(Discs, FailWhereTheFunctionIsNotAnalytic) {
     EXPECT_FALSE(is_finite(f));
   }
   EXPECT_FALSE(is_finite(Disc{0x1p1000, 0.0} * Disc{0x1p1000, 0.0}));
-}
-
-TEST_F(Discs, HaveTheSameBitsFourAtATime) {
-  using lanes::Four;
-  for (int i = 0; i < kTrials; ++i) {
-    const std::array<Disc, 4> a{disc(), disc(), disc(), disc()}, b{disc(), disc(), disc(), disc()};
-    const auto expect_same = [&](const auto& operation) {
-      const auto gathered = [](const std::array<Disc, 4>& d) -> BasicDisc<Four> {
-        return {Four{d[0].centre, d[1].centre, d[2].centre, d[3].centre},
-                Four{d[0].radius, d[1].radius, d[2].radius, d[3].radius}};
-      };
-      const BasicDisc<Four> found = operation(gathered(a), gathered(b));
-      for (std::size_t k = 0; k < 4; ++k) {
-        const Disc one = operation(a[k], b[k]);
-        EXPECT_EQ(found.centre[k], one.centre);
-        EXPECT_EQ(found.radius[k], one.radius);
-      }
-    };
-    expect_same([](const auto& z, const auto& w) { return z + w; });
-    expect_same([](const auto& z, const auto& w) { return z - w; });
-    expect_same([](const auto& z, const auto& w) { return z * w; });
-    expect_same([](const auto& z, const auto&) { return inverse(z); });
-    expect_same([](const auto& z, const auto&) { return square(z); });
-    expect_same([](const auto& z, const auto&) { return square_root(z); });
-    expect_same([](const auto& z, const auto&) { return atan_of_root(z); });
-  }
 }
 
 TEST(GaussRules, IntegratePowersExactly) {

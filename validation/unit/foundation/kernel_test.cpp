@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <thread>
-#include <vector>
 
 #include "exactff/enclosure.h"
 #include "generate/random.h"
@@ -18,7 +17,6 @@ namespace {
 using generate::Random;
 
 constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
-constexpr double kLargest = std::numeric_limits<double>::max();
 
 Rational power_of_two(long exponent) { return times_power_of_two(1, exponent); }
 
@@ -26,16 +24,6 @@ Rational power_of_two(long exponent) { return times_power_of_two(1, exponent); }
 double any_double(Random& random) {
   const double fraction = random.between(1.0, 2.0) * (random.one_in(2) ? -1.0 : 1.0);
   return std::ldexp(fraction, random.integer(-1074, 1023));
-}
-
-TEST(Numbers, NearestDoubleRoundsAsIeeeAdditionDoes) {
-  Random random(1);
-  for (int i = 0; i < 20000; ++i) {
-    const double a = any_double(random);
-    const double b = std::ldexp(any_double(random), 0);
-    if (!std::isfinite(a + b)) continue;
-    ASSERT_EQ(nearest_double(to_rational(a) + to_rational(b)), a + b) << a << " + " << b;
-  }
 }
 
 TEST(Numbers, NearestDoubleRoundsAsIeeeMultiplicationAndDivisionDoDenormalsIncluded) {
@@ -76,26 +64,6 @@ TEST(Numbers, NearestDoubleOfAQuotientIsNoFartherThanItsNeighbours) {
   }
 }
 
-TEST(Numbers, TiesGoToTheEvenMantissa) {
-  EXPECT_EQ(nearest_double(1 + power_of_two(-53)), 1.0);
-  EXPECT_EQ(nearest_double(1 + 3 * power_of_two(-53)), 1.0 + 0x1p-51);
-  EXPECT_EQ(nearest_double(1 + power_of_two(-53) + power_of_two(-2000)), 1.0 + 0x1p-52);
-  EXPECT_EQ(nearest_double(power_of_two(-1075)), 0.0);
-  EXPECT_EQ(nearest_double(3 * power_of_two(-1075)), 2 * kDenormal);
-  EXPECT_EQ(nearest_double(power_of_two(-1075) + power_of_two(-3000)), kDenormal);
-  EXPECT_EQ(nearest_double(-power_of_two(-1074)), -kDenormal);
-  EXPECT_EQ(nearest_double(power_of_two(1024)), std::numeric_limits<double>::infinity());
-}
-
-TEST(Numbers, DecomposeIsExact) {
-  for (const double value : {0.0, -0.0, 1.0, -0.1, 96.0, kDenormal, -3 * kDenormal, kLargest, -kLargest, 552.8}) {
-    const BinaryDouble parts = decompose(value);
-    EXPECT_EQ(Rational(parts.mantissa) * power_of_two(parts.exponent), to_rational(value)) << value;
-    EXPECT_EQ(parts.mantissa % 2 == 0, value == 0.0) << value;
-    EXPECT_LE(parts.exponent, BinaryDouble::kExponentOfZero) << value;
-  }
-}
-
 Vec3 any_vec(Random& random) { return {any_double(random), any_double(random), any_double(random)}; }
 
 TEST(ExactVec, DifferenceIsExactAtAnyScale) {
@@ -109,34 +77,6 @@ TEST(ExactVec, DifferenceIsExactAtAnyScale) {
     ASSERT_EQ(d.v.y * unit, to_rational(p.y) - to_rational(q.y));
     ASSERT_EQ(d.v.z * unit, to_rational(p.z) - to_rational(q.z));
   }
-}
-
-TEST(ExactVec, ResultsDoNotDependOnWhatTheirMemoryHeld) {
-  Random random(4);
-  ScaledVec3 used;
-  ExactVec3 used_cross;
-  Integer used_dot;
-  for (int i = 0; i < 2000; ++i) {
-    const Vec3 p = any_vec(random), q = random.one_in(4) ? p : any_vec(random);
-    set_difference(used, p, q);
-    const ScaledVec3 fresh = exact_difference(p, q);
-    EXPECT_EQ(used.exponent, fresh.exponent);
-    EXPECT_TRUE(is_zero(used.v - fresh.v));
-    const ExactVec3 other = exact_vector(q).v;
-    set_cross(used_cross, fresh.v, other);
-    EXPECT_TRUE(is_zero(used_cross - cross(fresh.v, other)));
-    set_dot(used_dot, fresh.v, other);
-    EXPECT_EQ(used_dot, dot(fresh.v, other));
-  }
-}
-
-TEST(ExactVec, OrientationSeesOneUlp) {
-  const Vec3 a{0, 0, 0.1};
-  const Vec3 b{1, 0, 0.1};
-  const Vec3 c{0, 1, 0.1};
-  EXPECT_EQ(orientation(a, b, c, {0.3, 0.3, 0.1}), 0);
-  EXPECT_EQ(orientation(a, b, c, {0.3, 0.3, std::nextafter(0.1, 1.0)}), 1);
-  EXPECT_EQ(orientation(a, b, c, {0.3, 0.3, std::nextafter(0.1, 0.0)}), -1);
 }
 
 // Vectors whose dot product is 0 or nearly 0, at scales from harmless to hopeless.
@@ -167,17 +107,6 @@ TEST(Filter, ASignItGivesIsTheExactSign) {
   }
 }
 
-TEST(Filter, DecidesWhatIsNotNearlyZero) {
-  Random random(7);
-  for (int i = 0; i < 1000; ++i) {
-    const Approx3 a{random.between(1, 2), random.between(1, 2), random.between(1, 2)};
-    const Approx3 b{random.between(1, 2), random.between(-2, -1), random.between(0x1p-40, 1)};
-    const double dot_product = a.x * b.x + a.y * b.y + a.z * b.z;
-    if (std::abs(dot_product) <= 0x1p-44) continue;
-    ASSERT_EQ(sign_of_dot(a, b), dot_product > 0.0 ? 1 : -1);
-  }
-}
-
 TEST(Filter, DeclinesWhereItCannotKnow) {
   EXPECT_EQ(sign_of_dot({1.0, 0x1p-53, 0.0}, {0x1p-53, -1.0, 0.0}), kUncertain);
   EXPECT_EQ(sign_of_dot({1e-300, 0.0, 0.0}, {1e-300, 0.0, 0.0}), kUncertain);  // underflows
@@ -185,26 +114,6 @@ TEST(Filter, DeclinesWhereItCannotKnow) {
   EXPECT_EQ(sign_of_dot({std::nan(""), 1.0, 0.0}, {1.0, 1.0, 0.0}), kUncertain);
   EXPECT_EQ(sign_of_dot({1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}), 0);
   EXPECT_EQ(sign_of_dot({1.0, 2.0, 3.0}, {1.0, 1.0, -0.5}), 1);
-}
-
-TEST(Filter, ApproximationsAreWithinTheirStatedError) {
-  Random random(5);
-  for (int i = 0; i < 2000; ++i) {
-    const ExactVec3 v = exact_vector(any_vec(random)).v;
-    const Approx3 a = approx(v);
-    if (std::isnan(a.x + a.y + a.z)) continue;
-    const int axis = std::abs(a.x) >= std::abs(a.y) ? (std::abs(a.x) >= std::abs(a.z) ? 0 : 2)
-                                                    : (std::abs(a.y) >= std::abs(a.z) ? 1 : 2);
-    const double largest = axis == 0 ? a.x : axis == 1 ? a.y : a.z;
-    // One positive factor for all three components, within 2^-52 each.
-    const auto ratio_error = [&](double component, const Integer& exact) -> Rational {
-      return abs(to_rational(component) * v[axis] - to_rational(largest) * exact);
-    };
-    const Rational bound = power_of_two(-51);
-    ASSERT_LE(ratio_error(a.x, v.x), bound * abs(to_rational(largest) * v.x));
-    ASSERT_LE(ratio_error(a.y, v.y), bound * abs(to_rational(largest) * v.y));
-    ASSERT_LE(ratio_error(a.z, v.z), bound * abs(to_rational(largest) * v.z));
-  }
 }
 
 Enclosure ball_of(const Rational& value, long bits) { return EnclosureInside::of(to_ball(value, bits)); }
@@ -217,15 +126,6 @@ TEST(Enclosure, NearestAgreesWithTheExactRounding) {
     ASSERT_TRUE(nearest.has_value());
     ASSERT_EQ(*nearest, nearest_double(value));
   }
-}
-
-TEST(Enclosure, NearestHandlesDenormalsAndTies) {
-  for (const long numerator : {1L, 2L, 3L, 5L, 7L}) {
-    const Rational value = numerator * power_of_two(-1075);  // exact balls: ties included
-    EXPECT_EQ(ball_of(value, 64).nearest(), nearest_double(value)) << numerator;
-  }
-  EXPECT_EQ(ball_of(power_of_two(-5000), 64).nearest(), 0.0);
-  EXPECT_FALSE(std::signbit(*ball_of(-power_of_two(-5000), 64).nearest()));
 }
 
 TEST(Enclosure, NearestIsUndecidedAcrossAMidpoint) {
@@ -274,22 +174,6 @@ TEST(Enclosure, DecimalsAreRoundedOrRefused) {
   EXPECT_EQ(ball_of(Rational(1, 3000), 200).decimals(3), "0.000333");
   EXPECT_EQ(ball_of(Rational(1, 3000000000), 200).decimals(3), "3.33e-10");
   EXPECT_EQ(ball_of(Rational(999999, 1000000), 200).decimals(3), "1.00");
-}
-
-TEST(Enclosure, SumsEncloseSums) {
-  Enclosure sum;
-  for (int i = 0; i < 7; ++i) sum += ball_of(Rational(1, 7), 100);
-  EXPECT_TRUE(sum.contains(1.0));
-  EXPECT_LT(sum.upper() - sum.lower(), 0x1p-50);
-  EXPECT_FALSE(sum.contains(std::nextafter(1.0, 2.0)));
-}
-
-TEST(Enclosure, PrintsABallThatHoldsTheNumber) {
-  const Enclosure third = ball_of(Rational(1, 3), 64);
-  EXPECT_EQ(third.midpoint().substr(0, 17), "0.333333333333333");
-  EXPECT_NE(third.radius(), "0");
-  EXPECT_EQ(Enclosure().midpoint(), "0");
-  EXPECT_EQ(Enclosure().radius(), "0");
 }
 
 // LeakSanitizer judges it when the process ends.

@@ -62,19 +62,5 @@ TEST(PlainLines, ManyLinesOfEitherEndTakeLinearTime) {
   }
 }
 
-TEST(ProblemList, KeepsAThousandAndCountsTheRest) {
-  text::ProblemList list;
-  for (std::size_t i = 0; i < 1500; ++i) list.add({"f", 1500 - i, "wrong", "", ""});
-  try {
-    list.throw_if_any();
-    FAIL() << "nothing thrown";
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.problems().size(), 1001U);
-    EXPECT_EQ(error.problems().front().line, 501U);
-    EXPECT_EQ(error.problems().back().message(), "f: 500 more problems (only the first ones are shown)");
-    EXPECT_TRUE(std::string_view(error.what()).ends_with("\n... and more than 981 more problems"));
-  }
-}
-
 }  // namespace
 }  // namespace exactff

@@ -10,7 +10,6 @@
 
 #include "exactff/adaptive.h"
 #include "exactff/exact.h"
-#include "generate/families.h"
 #include "scene/closed_surfaces.h"
 #include "scene/scene.h"
 #include "unit/rivals/methods_support.h"
@@ -66,32 +65,6 @@ TEST(Threads, ShareASceneAndASourceForExactValues) {
     }
     return values;
   });
-}
-
-TEST(Threads, ShareASceneForDrawings) {
-  expect_same_at_once([](const Scene& scene) {
-    const ExactSource source(scene, scene.select("lamp"));
-    std::vector<std::size_t> corners;
-    for (const Receiver& receiver : validation::room_receivers(scene)) {
-      for (const PlaneDrawing& plane : draw_visibility(scene, receiver, source)) {
-        for (const auto& loop : plane.visible) corners.push_back(loop.corners.size());
-      }
-    }
-    return corners;
-  });
-}
-
-// Long lists of candidates: the first thread that needs the ray structure builds it.
-TEST(Threads, ShareAnAdaptiveSolver) {
-  const generate::PlainScene plain = generate::karkanis({.n = 60});
-  const Scene scene = generate::build(plain);
-  const AdaptiveSolver alone(scene), shared(scene);
-  const auto estimate = [&](const AdaptiveSolver& solver) {
-    return solver.form_factor(generate::receiver_of(plain), scene.select(plain.source), 1.0, {.eps_b = 0.01, .rays = 4})
-        .form_factor;
-  };
-  const double expected = estimate(alone);
-  for (const double found : at_once([&] { return estimate(shared); })) EXPECT_EQ(found, expected);
 }
 
 }  // namespace

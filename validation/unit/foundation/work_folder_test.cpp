@@ -7,7 +7,6 @@
 
 #include <csignal>
 #include <fstream>
-#include <optional>
 #include <set>
 #include <string>
 
@@ -45,11 +44,6 @@ class WorkFolders : public testing::Test {
   const fs::path target_ = directory_.path() / "result";
 };
 
-TEST_F(WorkFolders, GoWithTheirOwner) {
-  { const files::WorkFolder folder(target_); }
-  EXPECT_TRUE(names().empty());
-}
-
 TEST_F(WorkFolders, OfAKilledProcessAreCleared) {
   be_killed_in_the_middle();
   EXPECT_EQ(names().size(), 1U);
@@ -73,12 +67,6 @@ TEST_F(WorkFolders, OfAnotherTargetStay) {
   { const files::WorkFolder other(directory_.path() / "resul"); }
   { const files::WorkFolder other(directory_.path() / "result2"); }
   EXPECT_EQ(names(), before);
-}
-
-TEST_F(WorkFolders, WithoutALockAreLeftOvers) {
-  put(directory_.path() / ".result.partial-4711" / "values.csv");  // names used by the first version
-  { const files::WorkFolder folder(target_); }
-  EXPECT_TRUE(names().empty());
 }
 
 TEST_F(WorkFolders, WhatWasNeverPutThereByUsStays) {
@@ -113,15 +101,6 @@ TEST_F(WorkFolders, AFormerResultComesBack) {
   put(directory_.path() / ".result.old-4711-0" / "values.csv", "# exactff 0.1.0\n");
   { const files::WorkFolder folder(target_); }
   EXPECT_EQ(names(), std::set<std::string>{"result"});
-}
-
-// Killed just after the rename: the lock file is still there.
-TEST_F(WorkFolders, AResultWithALockCanBeReplaced) {
-  put(target_ / "values.csv", "# exactff 0.1.0\n");
-  put(target_ / files::kLockFile, "");
-  page::StagedFolder staged(target_);
-  staged.commit();
-  EXPECT_TRUE(fs::is_empty(target_));
 }
 
 TEST_F(WorkFolders, WholeFilesTakeTheirTurns) {

@@ -89,35 +89,12 @@ TEST(AdaptiveConvergence, StaysWithinTheStatisticalBound) {
   }
 }
 
-TEST(AdaptiveConvergence, TendsToTheTruth) {
-  for (const Known& known : kKnown) {
-    const AdaptiveResult result = solve(two_part_scene(known.half_size), 1e-5, 4096, SamplePattern::kJittered);
-    EXPECT_LT(error_bound(result, 4096), 2e-3);
-    EXPECT_NEAR(result.form_factor, known.form_factor, 1e-5);
-  }
-}
-
 // If the shadow's edges are subdivision lines, shaft culling and one ray to each side are sufficient.
 TEST(AdaptiveConvergence, IsExactOnceTheSubdivisionMeetsTheShadow) {
   for (const Known& known : kKnown) {
     const AdaptiveResult result = solve(occluded_scene(known.half_size), 1e-3, 16, SamplePattern::kJittered);
     EXPECT_NEAR(result.form_factor, known.form_factor, 1e-14);
   }
-}
-
-TEST(AdaptiveConvergence, EveryPatternConverges) {
-  for (const SamplePattern pattern :
-       {SamplePattern::kRegular, SamplePattern::kJittered, SamplePattern::kLowDiscrepancy}) {
-    const AdaptiveResult result = solve(two_part_scene(0.25), 1e-4, 1024, pattern);
-    EXPECT_NEAR(result.form_factor, kKnown[0].form_factor, 1e-4) << static_cast<int>(pattern);
-  }
-}
-
-// With one ray to the centre of each part there is no doubt: two leaves, both with a silent error.
-TEST(AdaptiveConvergence, OneRayNeverSubdivides) {
-  const AdaptiveResult result = solve(two_part_scene(0.25), 1e-6, 1, SamplePattern::kCentre);
-  EXPECT_EQ(result.leaves, 2U);
-  EXPECT_EQ(result.rays, 2U);
 }
 
 }  // namespace

@@ -46,27 +46,6 @@ TEST(Wallace, SplitIntoDiscsItConvergesWithTheirArea) {
   EXPECT_NEAR(value(plain, "wallace:splits=1"), 4.0 / (std::numbers::pi + 4.0), 1e-14);
 }
 
-// Apart from the smooth part, only cells on the shadow's edge can be wrong, each at most by its whole value. The edge
-// is slightly longer than 2 and crosses at most 2 m + 2 cells.
-TEST(CentreRays, ErrInTheCellsOfTheShadowsEdgeOnly) {
-  const PlainScene plain = half_hidden();
-  const double f = truth(plain);
-  for (const int m : {4, 16, 64}) {
-    const double area = 4.0 / (m * m);
-    const double bound = midpoint_bound(4.0, 2.0 / m) + (2 * m + 2) * area * std::numbers::inv_pi;
-    EXPECT_NEAR(value(plain, "nettle:pattern=centre,splits=" + std::to_string(m)), f, bound) << m;
-    EXPECT_NEAR(value(plain, "wallace:splits=" + std::to_string(m)), f, bound + f * area) << m;
-  }
-  EXPECT_NEAR(value(plain, "nettle:pattern=centre,splits=512"), f, 2e-3);
-}
-
-TEST(Nettle, ManyRaysGiveTheVisibleShareOfAnEvenlyLitPatch) {
-  PlainScene far = half_hidden();  // so far away that only V matters
-  for (Vec3& v : far.vertices) v = {v.x, v.y, v.z + 100.0};
-  // 4096 regular cells; the edge crosses at most 2 * 64 + 2 of them.
-  EXPECT_NEAR(value(far, "nettle:rays=4096,pattern=regular") / truth(far), 1.0, 130.0 / 4096.0 / 0.4 + 4e-4);
-}
-
 TEST(Nettle, TheLiteralVariantShinesBehindAndScalesByARatioOfAreas) {
   PlainScene behind = open_scene();
   behind.point = {0, 0, 2};
@@ -97,14 +76,6 @@ TEST(StochasticMethods, AreRightOnAverage) {
   }
 }
 
-// Without shadows, 4096 points of a net have a standard error below 1e-6, so a bias of 1e-5 would be detected.
-TEST(AreaSampling, IsRightToFiveDigitsOnASmoothSource) {
-  const PlainScene plain = open_scene();
-  const Moments found = moments(values_by_seed(plain, "area-sampling:pattern=sobol,samples=4096", 16));
-  EXPECT_LT(found.variance, 1.6e-11);
-  EXPECT_NEAR(found.mean, truth(plain), 5.0 * std::sqrt(found.variance / 16.0));
-}
-
 // Root mean square error against n: slope -1/2; -3/4 across one shadow edge; -1 without an edge. For two variances with
 // 63 degrees of freedom each, the logarithm of the ratio is within 5 standard deviations, sqrt(2/63 + 2/63).
 TEST(AreaSampling, VarianceFallsAsTheoryHasIt) {
@@ -119,22 +90,6 @@ TEST(AreaSampling, VarianceFallsAsTheoryHasIt) {
   EXPECT_LT(std::abs(std::log(ratio(half_hidden(), "stratified") / 64.0)), std::log(slack));
   EXPECT_GT(ratio(open_scene(), "stratified"), 256.0 / slack);
   EXPECT_GT(ratio(open_scene(), "sobol"), 256.0 / slack);
-}
-
-// A source with faces of several shapes in several planes, one of them partly below the horizon.
-TEST(AreaSampling, IsUniformOverAllFaces) {
-  PlainScene plain;
-  add(plain, "source", {{-1, -1, 1}, {-1, 1, 1}, {1, 1.5, 1}, {0.5, -1, 1}});
-  add(plain, "source", {{2, 0, 2}, {2, 1, 2}, {3, 0, 2}});
-  add(plain, "source", {{-2, -1, -1}, {-2, 1, -1}, {-2, 1, 2}, {-2, 0, 3}, {-2, -1, 2}});
-  const double f = truth(plain);
-  for (const char* choice :
-       {"area-sampling:pattern=stratified,samples=256", "area-sampling:pattern=sobol", "area-sampling:samples=5"}) {
-    const Moments found = moments(values_by_seed(plain, choice, 64));
-    EXPECT_NEAR(found.mean, f, 5.0 * std::sqrt(found.variance / 64.0)) << choice;
-  }
-  EXPECT_NEAR(value(plain, "wallace:splits=128"), f, 2e-4);
-  EXPECT_NEAR(value(plain, "nettle:splits=64,rays=4"), f, 2e-3);
 }
 
 // Many occluders: the ray library is asked about the whole scene.
@@ -161,17 +116,6 @@ TEST(RayMethods, LidsOnTheReceiverAndOnTheSourceHideAmongMany) {
   }
 }
 
-TEST(RayMethods, FacesJustBelowTheReceiverOrBeyondTheSourceHideNothingAmongMany) {
-  const PlainScene plain = generate::soup({.n = 600, .seed = 8});
-  PlainScene more = plain;
-  add(more, "floor", square_above(2.0, -1e-9));
-  add(more, "beyond", square_above(2.0, 1.0 + 1e-9));
-  add(more, "coplanar", square_above(2.5, 1.0));
-  for (const char* choice : {"area-sampling:samples=256", "wallace:splits=16", "nettle:splits=3"}) {
-    EXPECT_EQ(value(more, choice), value(plain, choice)) << choice;
-  }
-}
-
 TEST(RayMethods, TracesNoRayWhereNothingIsInTheWay) {
   const Scene scene = generate::build(open_scene());
   for (const char* choice : {"area-sampling", "wallace", "nettle"}) {
@@ -179,45 +123,6 @@ TEST(RayMethods, TracesNoRayWhereNothingIsInTheWay) {
   }
   const Scene hidden = generate::build(half_hidden());
   EXPECT_EQ(estimate(hidden, generate::receiver_of(half_hidden()), "source", "wallace:splits=5").counters["rays"], 25U);
-}
-
-TEST(EvenSplit, PartsTileThePatch) {
-  using adaptive::SubPatch;
-  const std::vector<std::vector<Vec3>> polygons = {{{0, 0, 1}, {0, 1, 1}, {1, 0, 1}},
-                                                   {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}},
-                                                   {{0, 0, 1}, {0, 1, 1}, {2, 1.5, 1}, {1, 0, 1}}};
-  for (const std::vector<Vec3>& polygon : polygons) {
-    const SubPatch whole = adaptive::make_sub_patch(polygon);
-    for (const int m : {1, 2, 5}) {
-      std::vector<SubPatch> parts;
-      adaptive::split_evenly(whole, m, parts);
-      EXPECT_EQ(parts.size(), static_cast<std::size_t>(m * m));
-      double total = 0.0;
-      for (const SubPatch& part : parts) {
-        total += adaptive::area(part);
-        EXPECT_EQ(part.corner_count(), whole.corner_count());
-      }
-      EXPECT_NEAR(total, adaptive::area(whole), 1e-14);
-    }
-  }
-}
-
-// Every 2^k points from the start of Sobol's sequence: one in each elementary interval of area 2^-k, whatever its
-// shape.
-TEST(UnitPoints, SobolsPointsAreANet) {
-  constexpr int kCount = 64;
-  std::vector<adaptive::UnitPoint> points;
-  methods::UnitPoints(methods::PointSet::kSobol, kCount).place(1, points);
-  const adaptive::UnitPoint shift = points[0];  // the first point is the origin
-  for (int columns = 1; columns <= kCount; columns *= 2) {
-    std::vector<int> hits(kCount, 0);
-    for (const adaptive::UnitPoint& p : points) {
-      const double u = std::fmod(p.u - shift.u + 1.0, 1.0), v = std::fmod(p.v - shift.v + 1.0, 1.0);
-      const int rows = kCount / columns;
-      ++hits[static_cast<std::size_t>(static_cast<int>(u * columns) * rows + static_cast<int>(v * rows))];
-    }
-    for (const int count : hits) EXPECT_EQ(count, 1) << columns;
-  }
 }
 
 // A lamp of 2^-400 by 2^-400 at a distance of 1: squares of its area underflow.
@@ -235,17 +140,6 @@ TEST(RayMethods, AreRightWhereTheSquareOfAnAreaUnderflows) {
        {"area-sampling:pattern=random", "area-sampling:pattern=stratified", "area-sampling:pattern=sobol",
         "area-sampling:pattern=halton", "area-sampling:pattern=r2", "wallace", "nettle"}) {
     EXPECT_NEAR(value(plain, choice) / f, 1.0, 1e-12) << choice;
-  }
-}
-
-// Two faces, so that points are distributed by area.
-TEST(RayMethods, AreNumbersWhereAreasThemselvesAreSubnormal) {
-  PlainScene plain = open_scene();
-  for (Vec3& v : plain.vertices) v = {v.x * 0x1p-530, v.y * 0x1p-530, v.z};
-  add(plain, "source", {{0, 0, 1}, {0, 0x1p-530, 1}, {0x1p-530, 0, 1}});
-  for (const char* choice : {"area-sampling", "area-sampling:pattern=sobol", "wallace", "nettle"}) {
-    const double found = value(plain, choice);
-    EXPECT_TRUE(found >= 0.0 && found < 0x1p-1000) << choice;
   }
 }
 

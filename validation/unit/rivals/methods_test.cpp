@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
 #include <thread>
 
 #include "support/complaint.h"
@@ -76,12 +75,6 @@ TEST(MethodSettings, NumbersThatAreNoneAreRefused) {
             std::string::npos);
 }
 
-TEST(MethodSettings, AProgramThatAsksForWhatIsNotThereIsWrong) {
-  const Settings settings = methods::method_named("hemicube").defaults();
-  EXPECT_THROW((void)settings.number("resolution"), std::logic_error);  // a whole number
-  EXPECT_THROW((void)settings.whole("size"), std::logic_error);
-}
-
 TEST(MethodSettings, OnlyWhatCanChangeAValueTellsChoicesApart) {
   const auto normal = [](const char* text) {
     const Choice choice = methods::parse(text);
@@ -92,22 +85,6 @@ TEST(MethodSettings, OnlyWhatCanChangeAValueTellsChoicesApart) {
   EXPECT_FALSE(normal("nettle:variant=literal,receiver_area=3") == normal("nettle:variant=literal"));
   EXPECT_EQ(normal("exact:engine=boolean"), normal("exact"));
   EXPECT_FALSE(normal("area-sampling:seed=2") == normal("area-sampling"));
-}
-
-bool stochastic(const char* text) {
-  const Choice choice = methods::parse(text);
-  return choice.method->stochastic(choice.settings);
-}
-
-TEST(MethodSettings, KnowWhetherTheSeedMatters) {
-  for (const char* text :
-       {"area-sampling", "area-sampling:pattern=sobol", "adaptive", "nettle", "wallace:pattern=jittered"}) {
-    EXPECT_TRUE(stochastic(text)) << text;
-  }
-  for (const char* text : {"exact", "hemicube", "adaptive:pattern=regular", "adaptive-exact-visibility", "wallace",
-                           "nettle:pattern=centre"}) {
-    EXPECT_FALSE(stochastic(text)) << text;
-  }
 }
 
 // `stochastic` is set exactly for the methods whose values depend on the seed.
@@ -238,16 +215,6 @@ TEST(Methods, AdaptiveIsTampierisAlgorithmWithEverySetting) {
     EXPECT_EQ(found.counters["rays"], wanted.rays);
     EXPECT_EQ(found.counters["leaves: eps_A"], wanted.leaves_by_reason[static_cast<std::size_t>(LeafReason::kEpsA)]);
   }
-}
-
-TEST(MethodCounters, AddUpByName) {
-  methods::Counters counters;
-  counters.add("rays", 2);
-  counters.add("leaves", 1);
-  counters.add("rays", 3);
-  EXPECT_EQ(counters["rays"], 5U);
-  EXPECT_EQ(counters["pixels"], 0U);
-  EXPECT_EQ(counters.list().size(), 2U);
 }
 
 // A user-defined method, as the header shows it: F of a small source, without shadows.

@@ -5,7 +5,6 @@
 
 #include "adaptive/sampled_scene.h"
 #include "exactff/adaptive.h"
-#include "generate/families.h"
 #include "unit/rivals/sampled_scenes.h"
 
 #ifdef __SSE__
@@ -78,11 +77,6 @@ TEST(RayScene, RaysPassThroughAllButBlockers) {
   EXPECT_EQ(built.hidden({{0, 0, 2}, {1.5, 1.5, 2}}, {0}), 0b11U);
 }
 
-TEST(RayScene, KnownHiddenRaysStayHidden) {
-  const Built built(validation::occluded_scene(0.25));
-  EXPECT_EQ(built.hidden({{0, 0, 1}, {0.6, 0, 1}, {0.7, 0, 1}}, kOccluder, 0b100U), 0b101U);
-}
-
 TEST(Blockers, AreForgottenWhenAssignedAnew) {
   Blockers blockers;
   blockers.assign(4, kOccluder);
@@ -129,26 +123,6 @@ TEST(SinglePrecision, CollapsedFacesAreRefusedByName) {
   const std::string message = refusal(plain);
   EXPECT_NE(message.find("face 'needle'"), std::string::npos) << message;
   EXPECT_NE(message.find("collapses"), std::string::npos) << message;
-}
-
-TEST(SinglePrecision, VerticesAtOnePlaceAreNotMerged) {
-  PlainScene plain = validation::open_scene();
-  validation::add(plain, "again", validation::square_above(1.0, 1.0));  // new vertices, the same positions
-  EXPECT_EQ(refusal(plain), "");
-}
-
-TEST(SinglePrecision, TheUnitOfLengthDoesNotMatter) {
-  for (const double factor : {0x1p-1000, 0x1p1000}) {
-    PlainScene plain = validation::occluded_scene(0.25);
-    generate::scale(plain, factor);
-    EXPECT_EQ(refusal(plain), "") << factor;
-  }
-}
-
-TEST(SinglePrecision, AnOffsetThatLeavesTheDetailIsFine) {
-  PlainScene plain = validation::occluded_scene(0.25);
-  for (Vec3& v : plain.vertices) v.x += 1e6;
-  EXPECT_EQ(refusal(plain), "");  // the box is moved to the origin first
 }
 
 // Twenty triangles in front of the source, in a box of size `thickness` along z and 1 along the other axes.

@@ -3,21 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
-#include <numeric>
 
-#include "adaptive/sampled_scene.h"
+#include "adaptive/receiver_view.h"
 #include "adaptive/shaft.h"
-#include "generate/families.h"
 #include "kernel/numbers.h"
 #include "support/random_scenes.h"
 #include "unit/rivals/sampled_rays.h"
-#include "unit/rivals/sampled_scenes.h"
 
 namespace exactff::adaptive {
 namespace {
 
-using generate::PlainScene;
 using generate::Random;
 
 SubPatch random_sub_patch(Random& random) {
@@ -114,128 +109,6 @@ TEST(ShaftCull, AgreesWithExactSegments) {
   EXPECT_GT(seen.cut, 10);
   EXPECT_GT(seen.culled, 10);
   EXPECT_GT(seen.kept, 10);
-}
-
-TEST(ShaftCull, RaysAgreeWithExactSegments) {
-  Random random(12);
-  int differences = 0;
-  int hidden_rays = 0;
-  const std::uint64_t rounds = validation::scaled_count(200);
-  for (std::uint64_t round = 0; round < rounds; ++round) {
-    const SubPatch s = random_sub_patch(random);
-    const std::vector<Vec3> corners = random_occluder(random, s);
-    const auto polygon = seen_from_origin(corners);
-    if (!polygon) continue;
-    OccluderSet set;
-    set.add(*polygon, kReach);
-    const RayEnds ends = place(s, SamplePattern::kJittered, 16, random.bits());
-    const std::vector<Vec3> y = points(ends);
-    const auto hidden = std::count_if(y.begin(), y.end(), [&](const Vec3& p) { return meets(corners, p); });
-    hidden_rays += static_cast<int>(hidden);
-    differences += set.count_visible(set.push_all(), ends) != 16 - hidden ? 1 : 0;
-  }
-  EXPECT_EQ(differences, 0);
-  EXPECT_GT(hidden_rays, 100);
-}
-
-TEST(ShaftCull, AnInheritedListLosesNoOccluder) {
-  Random random(13);
-  const std::uint64_t rounds = validation::scaled_count(50);
-  for (std::uint64_t round = 0; round < rounds; ++round) {
-    SubPatch s = random_sub_patch(random);
-    OccluderSet set;
-    for (int k = 0; k < 40; ++k) {
-      if (const auto polygon = seen_from_origin(random_occluder(random, s))) set.add(*polygon, kReach);
-    }
-    const CandidateRange all = set.push_all();
-    CandidateRange list = all;
-    for (int depth = 0; depth < 12; ++depth) {
-      const auto shrunk = set.inherit(list, s, ShaftSides(s));
-      const RayEnds ends = place(s, SamplePattern::kJittered, 16, random.bits());
-      if (!shrunk) {
-        EXPECT_EQ(set.count_visible(all, ends), 0);
-        break;
-      }
-      EXPECT_LE(shrunk->size(), list.size());
-      EXPECT_EQ(set.count_visible(*shrunk, ends), set.count_visible(all, ends));
-      list = *shrunk;
-      s = split_patch(s)[random.below(4)];
-    }
-  }
-}
-
-TEST(ShaftCull, APatchCoveredExactlyIsNotDeclaredCut) {
-  const std::vector<Vec3> patch = {{-1, -1, 1}, {-1, 1, 1}, {1, 1, 1}, {1, -1, 1}};
-  const SubPatch s = make_sub_patch(patch);
-  OccluderSet set;
-  set.add(*seen_from_origin({{-0.5, -0.5, 0.5}, {-0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, {0.5, -0.5, 0.5}}), 1.0);
-  const auto list = set.inherit(set.push_all(), s, ShaftSides(s));
-  ASSERT_TRUE(list);
-  EXPECT_EQ(list->size(), 1U);  // if uncertain, rays decide
-  EXPECT_EQ(set.count_visible(*list, place(s, SamplePattern::kJittered, 16, 1)), 0);
-}
-
-// ---- From the scene to the first list ------------------------------------------------------------------------------
-
-// Every piece that meets a segment to a random point of the source must have been gathered; other pieces may be left
-// out. Receivers are at the origin, so that relative coordinates are exact.
-void expect_nothing_lost(const PlainScene& plain, std::uint64_t seed) {
-  const Scene scene = generate::build(plain);
-  const ScaledScene scaled(scene);
-  const ReceiverView view = view_from(generate::receiver_of(plain), scaled);
-  const SourceRoots source = make_source_roots(scene, scaled.points, scene.select(plain.source));
-  for (const SourceRoot& root : source.roots) {
-    const SourcePlane& plane = source.planes[root.plane];
-    if (!in_front(view, plane)) continue;
-    std::vector<Vec3> polygon;
-    for (int i = 0; i < root.corner_count; ++i) polygon.push_back(root.corners[i] - view.point);
-    std::vector<Vec3> clipped;
-    clip_by_horizon(polygon, view.normal, clipped);
-    if (clipped.size() < 3 || clipped.size() > 4) continue;
-    Gathered gathered;
-    gather_occluders(scaled, view, plane, clipped, Horizon::kClips, 0.0, gathered);
-    const RayEnds ends = place(make_sub_patch(clipped), SamplePattern::kJittered, 16, seed);
-    int visible = 0;
-    for (const Vec3& y : points(ends)) {
-      bool hidden = false;
-      for (std::uint32_t k = 0; k < scene.pieces().size(); ++k) {
-        if (std::binary_search(plane.coplanar.begin(), plane.coplanar.end(), k)) continue;
-        std::vector<Vec3> corners;
-        for (const std::uint32_t v : scene.corners(scene.pieces()[k])) corners.push_back(scaled.points[v]);
-        hidden = hidden || meets(corners, y);
-      }
-      visible += hidden ? 0 : 1;
-    }
-    EXPECT_LE(gathered.occluders.count_visible(gathered.occluders.push_all(), ends), visible);
-  }
-}
-
-TEST(GatherOccluders, LosesNothingInRandomScenes) {
-  for (std::uint64_t seed = 1; seed <= validation::scaled_count(8); ++seed) {
-    PlainScene plain = generate::soup({.n = 30, .seed = seed});
-    expect_nothing_lost(plain, seed);
-    plain = generate::lattice({.n = 20, .seed = seed});
-    expect_nothing_lost(plain, seed);
-  }
-}
-
-TEST(GatherOccluders, LooksOnlyWhereTheShaftIs) {
-  PlainScene plain = validation::open_scene();
-  Random random(3);
-  for (int k = 0; k < 1000; ++k) {
-    const Vec3 at{random.between(5, 50), random.between(-50, 50), random.between(0, 1)};
-    validation::add(plain, "away", {at, at + Vec3{1, 0, 0}, at + Vec3{0, 1, 0}});
-  }
-  const Scene scene = generate::build(plain);
-  const ScaledScene scaled(scene);
-  const ReceiverView view = view_from(generate::receiver_of(plain), scaled);
-  const SourceRoots source = make_source_roots(scene, scaled.points, scene.select("source"));
-  std::vector<Vec3> polygon;
-  for (int i = 0; i < 4; ++i) polygon.push_back(source.roots.at(0).corners[i] - view.point);
-  Gathered gathered;
-  gather_occluders(scaled, view, source.planes[0], polygon, Horizon::kClips, 0.0, gathered);
-  EXPECT_EQ(gathered.occluders.size(), 0U);
-  EXPECT_LT(gathered.looked_at, 10U);
 }
 
 }  // namespace

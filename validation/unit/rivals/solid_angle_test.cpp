@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "methods/area_sampling.h"
 #include "unit/rivals/methods_support.h"
@@ -20,11 +19,6 @@ PlainScene scene_of(const std::vector<Vec3>& source, const Vec3& normal = {0, 0,
   PlainScene plain;
   add(plain, "source", source);
   plain.normal = normal;
-  return plain;
-}
-
-PlainScene half_hidden(PlainScene plain) {
-  add(plain, "occluder", {{-2, -2, 0.5}, {-2, 2, 0.5}, {0.11, 2, 0.5}, {0.23, -2, 0.5}});
   return plain;
 }
 
@@ -75,31 +69,6 @@ TEST(SolidAngle, OfDegenerateSourcesIsRightOnAverage) {
   }
 }
 
-// The kernel is a cosine, which is as smooth near the source as far from it.
-TEST(SolidAngle, HasALittleVarianceWhereAreaHasMuch) {
-  const PlainScene near = scene_of({{-1, -1, 0.01}, {-1, 1, 0.01}, {1, 1, 0.01}, {1, -1, 0.01}}, {0.6, 0, 0.8});
-  const double by_area = moments(values_by_seed(near, "area-sampling", 64)).variance;
-  EXPECT_LT(moments(values_by_seed(near, kBySolidAngle, 64)).variance, 0.01 * by_area);
-}
-
-// As for AreaSampling.VarianceFallsAsTheoryHasIt.
-TEST(SolidAngle, VarianceFallsAsTheoryHasIt) {
-  const double slack = std::exp(5.0 * std::sqrt(4.0 / 63.0));
-  const auto ratio = [](const PlainScene& plain, const std::string& pattern) {
-    const auto variance = [&](const char* samples) {
-      return moments(values_by_seed(plain, kBySolidAngle + ",pattern=" + pattern + ",samples=" + samples, 64)).variance;
-    };
-    return variance("16") / variance("256");
-  };
-  const PlainScene triangle = scene_of({{-1, -1, 1}, {-1, 1.5, 1}, {1.5, -1, 1}});
-  for (const PlainScene& plain : {open_scene(), triangle}) {
-    EXPECT_LT(std::abs(std::log(ratio(half_hidden(plain), "random") / 16.0)), std::log(slack));
-    EXPECT_LT(std::abs(std::log(ratio(half_hidden(plain), "stratified") / 64.0)), std::log(slack));
-    EXPECT_GT(ratio(plain, "stratified"), 256.0 / slack);
-    EXPECT_GT(ratio(plain, "sobol"), 256.0 / slack);
-  }
-}
-
 TEST(SolidAngle, IsSharedOutOverAllFaces) {
   PlainScene plain;
   add(plain, "source", {{-1, -1, 1}, {-1, 1, 1}, {1, 1.5, 1}, {0.5, -1, 1}});
@@ -110,24 +79,6 @@ TEST(SolidAngle, IsSharedOutOverAllFaces) {
     const Moments found = moments(values_by_seed(plain, kBySolidAngle + ",pattern=" + pattern, 64));
     EXPECT_NEAR(found.mean, f, 5.0 * std::sqrt(found.variance / 64.0)) << pattern;
   }
-}
-
-TEST(SolidAngle, BehindManyOccludersIsRightOnAverage) {
-  const PlainScene plain = generate::soup({.n = 600, .seed = 8});
-  const Moments found = moments(values_by_seed(plain, kBySolidAngle + ",pattern=stratified", 64));
-  EXPECT_NEAR(found.mean, truth(plain), 5.0 * std::sqrt(found.variance / 64.0));
-}
-
-TEST(SolidAngle, OfARectangleIsThatOfItsTriangles) {
-  using methods::SolidAnglePart;
-  const std::vector<Vec3> square = {{-1, -1, 1}, {-1, 1, 1}, {1, 1, 1}, {1, -1, 1}};
-  std::vector<SolidAnglePart> parts;
-  methods::add_solid_angle_parts(square, 1.0, parts);
-  ASSERT_EQ(parts.size(), 1U);
-  const double triangles = SolidAnglePart::triangle(square[0], square[1], square[2], 1.0).solid_angle() +
-                           SolidAnglePart::triangle(square[0], square[2], square[3], 1.0).solid_angle();
-  EXPECT_NEAR(parts.front().solid_angle(), triangles, 1e-14);
-  EXPECT_NEAR(triangles, 4.0 * std::numbers::pi / 6.0, 1e-14) << "a side of a cube";
 }
 
 }  // namespace

@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "exactff/exact.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
-#include "kernel/filter.h"
 #include "support/solve.h"
 
 namespace exactff {
@@ -67,60 +65,6 @@ TEST(ClosedSurfaces, AreTellableByTheirEdges) {
   EXPECT_EQ(count_of(turned), 0U);
 }
 
-// Holes in one plane: the face of a tetrahedron, and one corner of an octahedron.
-TEST(ClosedSurfaces, WithHolesInOnePlaneAreToldOnRequest) {
-  const auto rims_of = [](const PlainScene& plain) {
-    const Scene scene = generate::build(plain);
-    const ClosedSurfaces found(scene, ClosedSurfaces::Edges::kCutAtJunctions);
-    std::vector<std::optional<ClosedSurface::Rim>> rims;
-    for (const ClosedSurface& surface : found.surfaces()) rims.push_back(surface.rim);
-    EXPECT_EQ(closed_surfaces(scene).surfaces().size(), 0U) << "only on request";
-    return rims;
-  };
-  PlainScene tetrahedron;
-  add_solid(tetrahedron, kCorners, {kTetrahedron.begin() + 1, kTetrahedron.end()});
-  const auto rims = rims_of(tetrahedron);
-  ASSERT_EQ(rims.size(), 1U);
-  ASSERT_TRUE(rims.front());
-  EXPECT_EQ(rims.front()->edges.size(), 3U);
-  const auto& [a, b, c] = rims.front()->plane;
-  EXPECT_GT(kernel::PlaneThrough(a, b, c).side_of(kCorners.back()), 0);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(kernel::PlaneThrough(a, b, c).side_of(kCorners[i]), 0);
-
-  const std::vector<Vec3> corners{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-  PlainScene half, two_holes, bent;
-  add_solid(half, corners, {kOctahedron.begin(), kOctahedron.begin() + 4});
-  EXPECT_EQ(rims_of(half).size(), 1U);
-  add_solid(two_holes, corners, {kOctahedron.begin() + 1, kOctahedron.end() - 1});
-  EXPECT_EQ(rims_of(two_holes).size(), 0U) << "their planes differ";
-  add_solid(bent, corners, {kOctahedron.begin() + 2, kOctahedron.end()});
-  EXPECT_EQ(rims_of(bent).size(), 0U) << "the hole is bent";
-  PlainScene sheet;
-  add_solid(sheet, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0}},
-            {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}});
-  EXPECT_EQ(rims_of(sheet).size(), 0U) << "it lies in the plane of its edges";
-}
-
-TEST(ClosedSurfaces, AreToldByPositionsAndKeptApart) {
-  PlainScene scene = scene_with_source();
-  for (const RingOfFace& face : kTetrahedron) {  // no two faces have a vertex in common
-    add_solid(scene, {kCorners[face[0]], kCorners[face[1]], kCorners[face[2]]}, {{0, 1, 2}});
-  }
-  std::vector<Vec3> elsewhere = kCorners;
-  for (Vec3& v : elsewhere) v.z += 2.0;
-  add_solid(scene, elsewhere, reversed(kTetrahedron));
-  const Scene built = generate::build(scene);
-  const ClosedSurfaces& found = closed_surfaces(built);
-  ASSERT_EQ(found.surfaces().size(), 2U);
-  EXPECT_FALSE(found.surfaces()[0].turned_inside_out);
-  EXPECT_TRUE(found.surfaces()[1].turned_inside_out);
-  EXPECT_EQ(found.surfaces()[0].box.low, (Vec3{0, 0, 0.5}));
-  EXPECT_EQ(found.surfaces()[1].box.high, (Vec3{0.25, 0.25, 2.75}));
-  EXPECT_EQ(found.of_piece(0), ClosedSurfaces::kNone);
-  EXPECT_EQ(found.of_piece(1), 0U);
-  EXPECT_EQ(found.of_piece(5), 1U);
-}
-
 TEST(ClosedSurfaces, WithAFinAreOpen) {
   PlainScene scene = scene_with_source();
   add_solid(scene, kCorners, kTetrahedron);
@@ -130,31 +74,6 @@ TEST(ClosedSurfaces, WithAFinAreOpen) {
   add_solid(loose, kCorners, kTetrahedron);
   add_solid(loose, {{0, 0, 0.5}, {0.25, 0, 0.5}, {0, 0, 0}}, {{0, 1, 2}});  // an unshared corner: certainly open
   EXPECT_EQ(count_of(loose), 1U);
-}
-
-std::uint64_t pairs_of(const PlainScene& scene) {
-  return validation::solve_by(Engine::kEdges, scene).planes.at(0).pairs;
-}
-
-// A fin is left out, also if a transparent face shares its tip.
-TEST(ClosedSurfaces, WithAFinUnderGlassAreClosed) {
-  PlainScene plain;
-  add_solid(plain, kCorners, kTetrahedron);
-  plain.add_ring(plain.patch("fin"), {kCorners[0], kCorners[1], {0.125, -0.5, 0.5}});
-  plain.add_ring(plain.patch("glass"), {{0.125, -0.5, 0.5}, {1, -0.5, 0.5}, {1, -0.5, 0.75}});
-  const Scene scene = generate::build(plain);
-  const Scene with_glass = scene.with_transparent(std::vector{scene.select("glass")});
-  EXPECT_EQ(closed_surfaces(with_glass).surfaces().size(), 1U);
-}
-
-TEST(ClosedSurfaces, SpareTheirBacks) {
-  PlainScene scene = scene_with_source();
-  add_solid(scene, kCorners, kTetrahedron);
-  PlainScene open = scene;
-  open.patches.push_back(open.patches.back());  // one face twice
-  open.patches.back().name = "again";
-  EXPECT_LT(pairs_of(scene), pairs_of(open));
-  EXPECT_EQ(validation::solve(scene).value, validation::solve(open).value);
 }
 
 void expect_agreement(const PlainScene& plain, const Receiver& receiver, const ExactOptions& options = {}) {
@@ -171,16 +90,6 @@ TEST(ClosedSurfaces, HideByTheirBacksWhoeverIsInside) {
   add_solid(scene, {{-4, -4, -1}, {4, -4, -1}, {0, 4, -1}, {0, 0, 0.5}}, kTetrahedron);
   EXPECT_EQ(validation::solve(scene).status, Status::kZero);
   expect_agreement(scene, generate::receiver_of(scene));
-}
-
-TEST(ClosedSurfaces, HideByTheirFrontsASourceInside) {
-  for (const bool inside_out : {false, true}) {
-    PlainScene scene = scene_with_source();
-    add_solid(scene, {{-4, -4, 0.5}, {4, -4, 0.5}, {0, 4, 0.5}, {0, 0, 8}},
-              inside_out ? reversed(kTetrahedron) : kTetrahedron);
-    EXPECT_EQ(validation::solve(scene).status, Status::kZero);
-    expect_agreement(scene, generate::receiver_of(scene));
-  }
 }
 
 TEST(ClosedSurfaces, HideByBacksWhereFrontsAreLeftOut) {

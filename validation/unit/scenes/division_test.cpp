@@ -139,20 +139,6 @@ TEST(Division, FacesOfAnyShapeAreCovered) {
   EXPECT_EQ(expect_cells(scene_of(round, {{ring}}), 2.1).cells, 1U);
 }
 
-// Its neighbours share every point, so an edge belongs to two cells or lies on the rim.
-TEST(Division, CellsHaveNoJunctions) {
-  const Scene scene = scene_of({{0, 0, 0}, {5.3, 0, 0}, {4.1, 2.2, 0}, {1.2, 2.2, 0}}, {{{0, 1, 2, 3}}});
-  const Scene cells = divided(scene, 0.5).scene;
-  EXPECT_EQ(cells.open_edge_count(), 11U + 2U * 6U + 6U);
-}
-
-TEST(Division, ABentFaceBecomesTriangles) {
-  const Scene bent = scene_of({{0, 0, 0}, {2, 0, 0}, {2, 2, 0.1}, {0, 2, 0}}, {{{0, 1, 2, 3}}});
-  ASSERT_EQ(bent.faces().front().shape, FaceShape::kTriangulated);
-  const DividedScene divided = expect_cells(bent, 4.0);
-  EXPECT_EQ(divided.cells, 2U);
-}
-
 TEST(Division, CellsAreNamedByTheirPatch) {
   const Scene scene = read_scene(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
   const DividedScene divided = expect_cells(scene, 140.0);
@@ -170,20 +156,6 @@ TEST(Division, CellsAreNamedByTheirPatch) {
   EXPECT_GE(smaller.select_all("floor").size(), 64U);
   EXPECT_GE(smaller.select_all("floor:3").size(), 4U);
   EXPECT_THROW((void)cells.select_all("flor"), InputError);
-}
-
-TEST(Division, ChangesNoFormFactor) {
-  const Scene scene = read_scene(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
-  const Scene cells = divided(scene, 100.0).scene;
-  const Receiver receiver{{200.25, 0.0, 400.5}, {0, 1, 0}, {}, {}};
-  const FormFactor whole = exact_form_factor(scene, receiver, ExactSource(scene, scene.select("light")));
-  double sum = 0.0;
-  for (const Selection& cell : cells.select_all("light")) {
-    sum += exact_form_factor(cells, receiver, ExactSource(cells, cell)).value;
-  }
-  EXPECT_EQ(cells.select_all("light").size(), 4U);
-  EXPECT_NEAR(sum, whole.value, 1e-15);
-  EXPECT_GT(sum, 0.0);
 }
 
 TEST(Division, WhatIsFlippedOrTransparentStaysSo) {
@@ -228,20 +200,6 @@ TEST(Division, CommutesWithPowersOfTwo) {
     rounded += divided.largest_deviation > 0.0 ? 1 : 0;
   }
   EXPECT_GE(rounded, 10U);
-}
-
-// Nothing overflows on the way, and no error is so small that it counts as none.
-TEST(Division, TellsItsDeviationAtTheEndsOfTheRange) {
-  for (const double size : {1.7e308, 7e300, 0x1p-900, 0x1p-1040}) {
-    const Scene scene = scene_of({{-size, 0, 0}, {size, 0, 0}, {size, size, 0}, {-size, size, 0}}, {{{0, 1, 2, 3}}});
-    const DividedScene thirds = divided(scene, 0.7 * size);
-    EXPECT_EQ(thirds.cells, 6U) << size;
-    EXPECT_GT(thirds.largest_deviation, 0.0) << size;
-    EXPECT_LE(thirds.largest_deviation / size, 0x1p-34) << size;  // 2^-1074 of 2^-1040
-    const DividedScene halves = divided(scene, 1.05 * size);
-    EXPECT_EQ(halves.cells, 2U) << size;
-    EXPECT_EQ(halves.largest_deviation, 0.0) << size;
-  }
 }
 
 TEST(Division, SaysWhyItRefuses) {

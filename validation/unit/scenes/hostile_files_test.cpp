@@ -10,10 +10,12 @@
 #include "exactff/scene_files.h"
 #include "support/program.h"
 #include "text/names.h"
+#include "unit/scenes/format_support.h"
 
 namespace exactff {
 namespace {
 
+using validation::error_of;
 using validation::TemporaryDirectory;
 
 const std::string kCorners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -23,17 +25,6 @@ Scene read_text(const std::string& text, const SceneOptions& options = {}) {
   return read_obj(in, "s.obj", options);
 }
 
-// The message about a text, or "no error".
-template <class Read>
-std::string message_of(const Read& read_it) {
-  try {
-    (void)read_it();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 std::string repeated(const std::string& text, std::size_t count) {
   std::string all;
   for (std::size_t i = 0; i < count; ++i) all += text;
@@ -41,21 +32,13 @@ std::string repeated(const std::string& text, std::size_t count) {
 }
 
 TEST(HostileFiles, WhatIsNoTextIsRefused) {
-  const auto message = [](const std::string& text) { return message_of([&] { return read_text(text); }); };
+  const auto message = [](const std::string& text) { return error_of([&] { return read_text(text); }); };
   EXPECT_EQ(message(kCorners + std::string("g a\0b\n", 6)),
             "s.obj: is not a text file (it contains zero bytes); give a Wavefront OBJ file");
   EXPECT_EQ(message(std::string("\xFF\xFEv\0 \0", 6)), "s.obj: is UTF-16 text (only UTF-8 is read); save it as UTF-8");
   EXPECT_EQ(message(std::string("\xFE\xFF\0v\0 ", 6)), "s.obj: is UTF-16 text (only UTF-8 is read); save it as UTF-8");
   EXPECT_EQ(message("\x80\x91\xFF garbage \x01\n"),
             "s.obj: has no faces (there is nothing to compute with); is it a Wavefront OBJ file?");
-}
-
-TEST(HostileFiles, WhatCannotBeReadIsRefused) {
-  EXPECT_NE(message_of([] { return read_obj("/dev/zero"); }).find("it contains zero bytes"), std::string::npos);
-  EXPECT_NE(message_of([] { return read_obj("/dev/null"); }).find("is empty"), std::string::npos);
-  // It can be opened, but reading its first byte fails.
-  EXPECT_NE(message_of([] { return read_obj("/proc/self/mem"); }).find("cannot be read to its end ("),
-            std::string::npos);
 }
 
 TEST(HostileFiles, ACutOffLastLineIsWarnedAbout) {
@@ -87,22 +70,16 @@ TEST(HostileFiles, ThousandsOfProblemsGiveTwentyLinesAndACount) {
   }
 }
 
-TEST(HostileFiles, ThousandsOfWarningsAreKeptToALimit) {
-  const Scene scene = read_text("v 0 0 0\nv 1 0 0\nv 1 1 .1\nv 0 1 0\n" + repeated("f 1 2 3 4\n", 3000));
-  ASSERT_EQ(scene.warnings().size(), 1001U);
-  EXPECT_EQ(scene.warnings().back().what, "2000 more warnings");
-}
-
 TEST(HostileFiles, ALongNameIsLegalButNotForManyFaces) {
   const std::string name(1'000'000, 'x');
   const Scene scene = read_text(kCorners + "g " + name + "\nf 1 2 3 4\n");
   EXPECT_EQ(scene.name_of(scene.select(name)), name);
-  const std::string unknown = message_of([&] { return scene.select(name + "y"); });
+  const std::string unknown = error_of([&] { return scene.select(name + "y"); });
   EXPECT_LT(unknown.size(), 1000U);
-  const std::string bad = message_of([&] { return read_text(kCorners + "g " + name + "\nf 1 3 2 4\n"); });
+  const std::string bad = error_of([&] { return read_text(kCorners + "g " + name + "\nf 1 3 2 4\n"); });
   EXPECT_LT(bad.size(), 1000U);
   EXPECT_NE(bad.find("crosses itself"), std::string::npos);
-  EXPECT_EQ(message_of([&] { return read_text(kCorners + "g " + name + "\n" + repeated("f 1 2 3\n", 1000)); }),
+  EXPECT_EQ(error_of([&] { return read_text(kCorners + "g " + name + "\n" + repeated("f 1 2 3\n", 1000)); }),
             "s.obj:6: the name 'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx...' of 1000000 characters belongs to 1000 "
             "faces (the name of every face contains it); choose a name of at most 255 characters");
 }
@@ -136,60 +113,13 @@ TEST(HostileFiles, AHugeGridIsRefusedBeforeItIsBegun) {
   const Scene scene = read_text(kCorners + repeated("f 1 2 3 4\n", 10));
   const Selection all = scene.select("default");
   EXPECT_EQ(
-      message_of([&] {
+      error_of([&] {
         return grid_receivers(scene, all, {1'000'000'000, 1'000'000'000});
       }),
       "a grid of 1000000000x1000000000 cells on 10 regions (the limit is 4194304 cells in total); use fewer cells or "
       "a smaller patch");
-  EXPECT_NE(message_of([&] { return grid_receivers(scene, all, {1000, 1000}); }), "no error");
+  EXPECT_NE(error_of([&] { return grid_receivers(scene, all, {1000, 1000}); }), "no error");
   EXPECT_EQ(grid_receivers(scene, all, {3, 2}).size(), 60U);
-}
-
-class HostileReceivers : public testing::Test {
- protected:
-  std::string message(const std::string& text) {
-    const auto path = directory_.write("r.csv", text);
-    const std::string all = message_of([&] { return read_receivers(path, scene_); });
-    const std::size_t start = all.find("r.csv:");
-    return start == std::string::npos ? all : all.substr(start);
-  }
-
-  const TemporaryDirectory directory_;
-  const Scene scene_ = read_text(kCorners + "g floor\nf 1 2 3 4\n");
-  const std::string head_ = "x,y,z,nx,ny,nz,on\n";
-};
-
-TEST_F(HostileReceivers, AnyLineEndWillDo) {
-  for (const char* end : {"\n", "\r\n", "\r"}) {
-    const auto path =
-        directory_.write("r.csv", std::string("x,y,z,nx,ny,nz") + end + "1,2,3,0,0,1" + end + "4,5,6,0,0,1");
-    EXPECT_EQ(read_receivers(path, scene_).size(), 2U);
-  }
-}
-
-TEST_F(HostileReceivers, NonsenseIsRefused) {
-  EXPECT_EQ(message(std::string("x,y\0z", 5)),
-            "r.csv: is not a text file (it contains zero bytes); give a CSV file of receivers");
-  EXPECT_EQ(message(""),
-            "r.csv: the file has no header (columns are identified by their names); begin the file with the line "
-            "id,x,y,z,nx,ny,nz,on");
-  EXPECT_EQ(message(head_ + "1,2,3,0,0,1e999,\n"),
-            "r.csv:2: '1e999' is too large for a double in column nz (points and normals are made of finite doubles); "
-            "give a smaller number; the largest double is about 1.8e308");
-  EXPECT_EQ(message(head_ + "1,2,3,0,0,0,\n"),
-            "r.csv:2: the normal is zero (it says which way the receiver faces); give a normal of any other length");
-  EXPECT_LT(message(std::string(5'000'000, 'x')).size(), 3000U);
-}
-
-TEST_F(HostileReceivers, ThousandsOfProblemsStayBounded) {
-  const std::string numbers = message(head_ + repeated("a,b,c,d,e,f,\n", 2000));
-  EXPECT_EQ(std::count(numbers.begin(), numbers.end(), '\n'), 20);
-  std::string unknown_faces = head_;
-  for (int i = 0; i < 3000; ++i) unknown_faces += "1,2,3,0,0,1,flor" + std::to_string(i) + "\n";
-  const std::string names = message(unknown_faces);
-  EXPECT_EQ(std::count(names.begin(), names.end(), '\n'), 20);
-  EXPECT_NE(names.find("there is no patch named 'flor0'"), std::string::npos);
-  EXPECT_TRUE(names.ends_with("... and more than 981 more problems"));
 }
 
 }  // namespace

@@ -2,10 +2,8 @@
 // of this may reach a terminal, a log or a page, and machine-readable output must be valid.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -88,19 +86,6 @@ TEST_F(HostileNames, AreSeenInLists) {
   const Ran list = expect_harmless({"info", room_});
   EXPECT_NE(list.output.find(kShownLight), std::string::npos) << list.output;
   expect_harmless({"info", room_, "--patches", "faces"});
-}
-
-TEST_F(HostileNames, AreToldOnceIfTheyAreNotUtf8) {
-  const std::string error = expect_harmless({"info", room_}).error;
-  const std::size_t told = error.find("is not written in UTF-8, nor is 1 other name (it is read as Latin-1");
-  EXPECT_NE(told, std::string::npos) << error;
-  EXPECT_EQ(error.find("is not written in UTF-8", told + 1), std::string::npos) << error;
-}
-
-TEST_F(HostileNames, AreSeenInResults) {
-  const Ran result = expect_harmless(point({"--explain", "--adaptive"}));
-  EXPECT_NE(result.output.find("source " + kShownLight), std::string::npos) << result.output;
-  expect_harmless(point({"--digits", "30"}));
 }
 
 TEST_F(HostileNames, AreSeenInComplaints) {

@@ -181,54 +181,6 @@ TEST_P(RandomRings, AreCutAsWindingNumbersSay) {
   EXPECT_LT(crossings, accepted / 50);
 }
 
-// A ring with up to three spikes: paths into the interior and back the same way, often along one line.
-Polygon spiked_ring(std::mt19937& random, const Polygon& outer) {
-  const auto inside = [&](const Point& p) {
-    for (std::size_t i = 0; i < outer.size(); ++i) {
-      if (turn(outer[i], outer[(i + 1) % outer.size()], p) <= 0) return false;
-    }
-    return true;
-  };
-  Polygon ring = outer;
-  for (std::size_t spikes = 1 + random() % 3; spikes > 0; --spikes) {
-    const std::size_t base = random() % ring.size();
-    Polygon path = {ring[base]};
-    for (std::size_t steps = 1 + random() % 3; steps > 0; --steps) {
-      Point p{static_cast<long>(random() % 17), static_cast<long>(random() % 17)};
-      const Point& corner = outer[random() % outer.size()];
-      if (random() % 2 == 0) p = {(path.back().x + corner.x) / 2, (path.back().y + corner.y) / 2};
-      if (inside(p) && (p.x != path.back().x || p.y != path.back().y)) path.push_back(p);
-    }
-    Polygon back(path.rbegin(), path.rend());
-    path.insert(path.end(), back.begin() + 1, back.end());
-    ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(base), path.begin(), path.end() - 1);
-  }
-  return ring;
-}
-
-TEST(PlanarRegion, SpikesVanish) {
-  std::mt19937 random(7);
-  const std::vector<Polygon> outers = {
-      {{0, 0}, {16, 0}, {16, 16}, {0, 16}}, {{0, 0}, {16, 2}, {5, 15}}, {{2, 0}, {14, 1}, {16, 9}, {8, 16}, {0, 8}}};
-  int accepted = 0;
-  for (int round = 0; round < 3000; ++round) {
-    const Polygon& outer = outers[random() % outers.size()];
-    const Polygon ring = spiked_ring(random, outer);
-    if (ring.size() == outer.size() || any_crossing({ring})) continue;
-    const CutFace face = cut({ring});
-    if (face.fault) continue;  // paths that touch each other can wind around something twice
-    ++accepted;
-    long area = 0;
-    for (const ConvexPart& part : face.parts) {
-      const Polygon corners = corners_of(part, {ring});
-      ASSERT_TRUE(is_strictly_convex_ring(corners)) << "round " << round;
-      area += twice_area(corners);
-    }
-    ASSERT_EQ(area, twice_area(outer)) << "round " << round;
-  }
-  EXPECT_GT(accepted, 1000);
-}
-
 INSTANTIATE_TEST_SUITE_P(PlanarRegion, RandomRings, testing::Bool(),
                          [](const auto& instance) { return instance.param ? "WithHoles" : "Alone"; });
 

@@ -26,25 +26,10 @@ using validation::letter_l;
 using validation::polygon;
 using validation::samples_of;
 using validation::scene_of;
-using validation::window_frame;
 
 std::vector<Receiver> vertices_of(const Scene& scene) { return vertex_receivers(scene, every_face(scene)); }
 std::vector<Receiver> centres_of(const Scene& scene) { return centre_receivers(scene, every_face(scene)); }
 Vec3 centre_of(const Polygon& face) { return centres_of(scene_of({face})).at(0).point; }
-
-// Exact test for a point in the plane z = 0: strictly inside a convex piece of the face.
-bool strictly_in_a_piece(const Scene& scene, FaceId face, const Vec3& p) {
-  const auto left_of = [&](const Vec3& a, const Vec3& b) {
-    return kernel::orientation(a, b, p, {a.x, a.y, a.z + 1}) > 0;
-  };
-  return std::ranges::any_of(scene.pieces_of(face), [&](const Piece& piece) {
-    const auto corners = scene.corners(piece);
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      if (!left_of(scene.vertices()[corners[i]], scene.vertices()[corners[(i + 1) % corners.size()]])) return false;
-    }
-    return true;
-  });
-}
 
 // Two triangles that touch at the origin.
 Polygon bow_tie() { return {{{-2, -1, 0}, {0, 0, 0}, {2, -1, 0}, {2, 1, 0}, {-2, 1, 0}}, {{0, 1, 2, 3, 1, 4}}}; }
@@ -78,18 +63,6 @@ TEST(VertexReceivers, WhereFacesMeetThereIsOneForEachNormal) {
   EXPECT_EQ(receivers[0].normal, (Vec3{0, 0, 0.5}));
   EXPECT_EQ(receivers[4].normal, (Vec3{0, 0.5, 0}));
   EXPECT_EQ(receivers[4].on, std::vector{FaceId{1}});
-}
-
-TEST(VertexReceivers, CornersOfHolesFollowThoseOfTheOuterRing) {
-  const auto receivers = vertices_of(scene_of({window_frame()}));
-  ASSERT_EQ(receivers.size(), 8U);
-  EXPECT_EQ(receivers[4].point, (Vec3{1, 1, 0}));
-  EXPECT_EQ(receivers[4].id, "face:1/5");
-}
-
-TEST(VertexReceivers, APositionVisitedTwiceHasOne) {
-  const auto receivers = vertices_of(scene_of({bow_tie()}));
-  EXPECT_EQ(ids_of(receivers), (std::vector<std::string>{"face:1/1", "face:1/2", "face:1/3", "face:1/4", "face:1/6"}));
 }
 
 TEST(VertexReceivers, TwoVerticesAtOnePositionAreOne) {
@@ -143,45 +116,6 @@ TEST(CentreReceivers, ACentreIsTheNearestDoubleOfTheTrueOne) {
 
 TEST(CentreReceivers, AnLHasTheCentroidOfItsArea) { EXPECT_EQ(centre_of(letter_l()), (Vec3{5.0 / 6.0, 5.0 / 6.0, 0})); }
 
-TEST(CentreReceivers, AnLInASlantedPlaneHasItsCentroidToo) {
-  // The same L along (2, 1, 2) and (-2, 2, 1), which are perpendicular: 5/6 of their sum is (0, 5/2, 5/2).
-  const auto at = [](double s, double t) { return Vec3{2 * s - 2 * t, s + 2 * t, 2 * s + t}; };
-  EXPECT_EQ(centre_of(polygon({at(0, 0), at(2, 0), at(2, 1), at(1, 1), at(1, 2), at(0, 2)})), (Vec3{0, 2.5, 2.5}));
-}
-
-TEST(CentreReceivers, ACentroidInAHoleIsReplacedByAPointInside) {
-  const Scene scene = scene_of({window_frame()});
-  const Vec3 centre = centres_of(scene).at(0).point;
-  EXPECT_NE(centre, (Vec3{1.5, 1.5, 0}));
-  EXPECT_TRUE(strictly_in_a_piece(scene, FaceId{0}, centre));
-}
-
-TEST(CentreReceivers, ACentroidOutsideAUIsReplacedByAPointInside) {
-  const Scene scene =
-      scene_of({polygon({{0, 0, 0}, {10, 0, 0}, {10, 9, 0}, {9, 9, 0}, {9, 1, 0}, {1, 1, 0}, {1, 9, 0}, {0, 9, 0}})});
-  EXPECT_TRUE(strictly_in_a_piece(scene, FaceId{0}, centres_of(scene).at(0).point));
-}
-
-TEST(CentreReceivers, ACentroidOnTheOutlineIsReplacedByAPointInside) {
-  const Vec3 centre = centre_of(bow_tie());  // its centroid is the corner where the triangles touch
-  EXPECT_EQ(std::abs(centre.x), 4.0 / 3.0);
-  EXPECT_EQ(centre.y, 0.0);
-}
-
-TEST(CentreReceivers, AKeyholeIsLikeAHole) {
-  const Polygon keyhole = {window_frame().vertices, {{0, 1, 2, 3, 0, 4, 7, 6, 5, 4}}};
-  const Scene scene = scene_of({keyhole});
-  EXPECT_TRUE(strictly_in_a_piece(scene, FaceId{0}, centres_of(scene).at(0).point));
-}
-
-TEST(CentreReceivers, AHoleThatMissesTheCentroidShiftsIt) {
-  // A square of side 4 at the origin without half a unit of area at (5/4, 0): (0 - 1/2 * 5/4) / (16 - 1/2).
-  const Polygon holed = {
-      {{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}, {1, -0.5, 0}, {1.5, -0.5, 0}, {1.5, 0.5, 0}, {1, 0.5, 0}},
-      {{0, 1, 2, 3}, {4, 5, 6, 7}}};
-  EXPECT_EQ(centre_of(holed), (Vec3{-0.625 / 15.5, 0, 0}));
-}
-
 // A star around the origin with random radii, and a smaller copy of it as a hole.
 Polygon random_star(std::mt19937_64& random, bool holed) {
   const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
@@ -231,27 +165,6 @@ TEST(CentreReceivers, ANonPlanarQuadrilateralHasItsCentreOnATriangle) {
   for (const double c : {centre.point.x, centre.point.y, centre.point.z}) EXPECT_NEAR(c, 5.0 / 12.0, 0x1p-48);
   EXPECT_GE(centre.point.z, std::max(centre.point.x, centre.point.y));
   EXPECT_TRUE(centre.normal == (Vec3{0, -0.5, 0.5}) || centre.normal == (Vec3{-0.5, 0, 0.5}));
-}
-
-TEST(CentreReceivers, ANonPlanarFaceIsWeighedAsSeenAlongItsNewellVector) {
-  // An L with one corner lifted, and the opposite corner lifted by the same amount; its view from above is unchanged.
-  Polygon bent = letter_l();
-  bent.vertices[2].z = bent.vertices[4].z = 0.125;
-  bent.vertices[3].z = 0.25;
-  const Scene scene = scene_of({bent});
-  ASSERT_EQ(scene.faces()[0].shape, FaceShape::kTriangulated);
-  const Receiver centre = centres_of(scene).at(0);
-  EXPECT_EQ(centre.on, std::vector{FaceId{0}});
-  EXPECT_NEAR(centre.point.x, 5.0 / 6.0, 0.05);
-  EXPECT_NEAR(centre.point.y, 5.0 / 6.0, 0.05);
-  EXPECT_GE(centre.point.z, 0.0);
-  EXPECT_LT(centre.point.z, 0.25);
-}
-
-TEST(CentreReceivers, HugeAndTinyFacesKeepTheirCentres) {
-  const double h = 0x1p1020, t = 0x1p-1060;
-  EXPECT_EQ(centre_of(polygon({{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}})), (Vec3{0, 0, 0}));
-  EXPECT_EQ(centre_of(polygon({{0, 0, 0}, {t, 0, 0}, {t, t, 0}, {0, t, 0}})), (Vec3{t / 2, t / 2, 0}));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <functional>
 
 #include "exactff/exact.h"
-#include "exactff/models.h"
 #include "exactff/receiver.h"
 
 namespace exactff {
@@ -86,19 +85,6 @@ TEST(Regions, RoundedCoordinatesGiveTheSameReceiversToRounding) {
   expect_same_points(whole, grid(fifty, 8, 8), 2e-6);
 }
 
-// From a square to a needle that is far narrower than the tolerance for straight sides.
-TEST(Regions, NeedlesHaveReceiversAsWell) {
-  for (int k = 0; k <= 40; ++k) {
-    SCOPED_TRACE(k);
-    const Map flattened = [k](double u, double v) { return tilted(u, std::ldexp(v, -k)); };
-    const Scene whole = surface(flattened, kSquare, {{0, 1, 2, 3}}), many = fan(flattened, 4);
-    const std::vector<Region> found = regions(many, many.select("floor"));
-    ASSERT_EQ(found.size(), 1U);
-    EXPECT_EQ(centre_receivers(many, found).size(), 1U);
-    expect_same_points(grid(whole, 3, 2), grid(many, 3, 2), 0.0);
-  }
-}
-
 TEST(Regions, AreJoinedOnlyByEdges) {
   const std::vector<std::pair<double, double>> corners = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {2, 1}, {2, 2}, {1, 2}};
   const Scene corner_to_corner = surface(tilted, corners, {{0, 1, 2, 3}, {2, 4, 5, 6}});
@@ -107,15 +93,6 @@ TEST(Regions, AreJoinedOnlyByEdges) {
   EXPECT_EQ(regions(opposite, opposite.select("floor")).size(), 2U);
   const Scene doubled = surface(tilted, kSquare, {{0, 1, 2, 3}, {0, 1, 2, 3}});
   EXPECT_EQ(regions(doubled, doubled.select("floor")).size(), 2U);
-}
-
-TEST(Regions, ABentSurfaceIsNone) {
-  const auto bent = [](double u, double v) { return Vec3{u, v, u > 0.5 && v > 0.5 ? 1e-4 : 0.0}; };
-  const Scene scene = surface(bent, kSquare, {{0, 1, 2}, {0, 2, 3}});
-  EXPECT_EQ(regions(scene, scene.select("floor")).size(), 2U);
-  const Scene ball = models::make_scene("mesh:n=2000");
-  const auto patch = ball.select("occ");
-  EXPECT_EQ(regions(ball, patch).size(), ball.faces_of(patch).size());
 }
 
 // A flat square whose neighbours along two sides bend away: the square stays one region.
@@ -127,41 +104,6 @@ TEST(Regions, EndWhereTheSurfaceBends) {
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].faces, (std::vector{FaceId{0}, FaceId{1}}));
   EXPECT_EQ(name_of(scene, found[0]), "floor:1+2");
-}
-
-TEST(Regions, CellsOutsideAnLAreLeftOut) {
-  const std::vector<std::pair<double, double>> corners = {{0, 0}, {1, 0}, {2, 0}, {2, 1},
-                                                          {1, 1}, {1, 2}, {0, 2}, {0, 1}};
-  const Scene scene = surface(
-      [](double u, double v) {
-        return Vec3{u, v, 0};
-      },
-      corners, {{0, 1, 4, 7}, {1, 2, 3, 4}, {7, 4, 5, 6}});
-  const auto receivers = grid(scene, 4, 4);
-  EXPECT_EQ(receivers.size(), 12U);
-  EXPECT_EQ(receivers[0].cell->lattice->width, 2.0);
-  const auto centres = centre_receivers(scene, regions(scene, scene.select("floor")));
-  ASSERT_EQ(centres.size(), 1U);
-  EXPECT_EQ(centres[0].point, (Vec3{5.0 / 6.0, 5.0 / 6.0, 0.0}));
-}
-
-TEST(Regions, HolesStayOpen) {
-  const std::vector<std::pair<double, double>> corners = {{0, 0}, {3, 0}, {3, 3}, {0, 3},
-                                                          {1, 1}, {2, 1}, {2, 2}, {1, 2}};
-  const Scene ring = surface(
-      [](double u, double v) {
-        return Vec3{u, v, 0};
-      },
-      corners, {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}});
-  EXPECT_EQ(regions(ring, ring.select("floor")).size(), 1U);
-  EXPECT_EQ(grid(ring, 3, 3).size(), 8U);
-}
-
-TEST(Regions, ANamedFaceIsAlone) {
-  const Scene scene = surface(tilted, kSquare, {{0, 1, 2}, {0, 2, 3}});
-  EXPECT_EQ(grid_receivers(scene, scene.select("floor:2"), {4, 4})[0].on, std::vector{FaceId{1}});
-  const std::vector<FaceId> faces = {FaceId{0}, FaceId{1}};
-  EXPECT_NE(grid_receivers(scene, faces, {4, 4}).size(), grid(scene, 4, 4).size());
 }
 
 // Next to the diagonal of a floor that is not quite planar, the triangle beyond the diagonal would hide a good part of

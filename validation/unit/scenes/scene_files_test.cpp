@@ -4,10 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <random>
 
 #include "exactff/exact.h"
-#include "exactff/models.h"
 #include "exactff/scene_files.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
@@ -193,23 +191,6 @@ TEST(RoundTrip, TextAndBinaryKeepEveryDouble) {
     // STL shares vertices at one position, and has no faces without area but triangles.
     EXPECT_EQ(corners(again(again(scene, ".stl"), ".stl")), corners(again(scene, ".stl")));
     EXPECT_EQ(again(again(scene, ".vs3"), ".vs3").hash(), again(scene, ".vs3").hash());
-  }
-}
-
-TEST(RoundTrip, EveryModelKeepsItsFormFactors) {
-  for (const char* name : {"room:n=3", "teapot:segments=2", "tiles:n=2", "closed-room"}) {
-    const Scene scene = models::make_scene(name);
-    const Receiver receiver{.point = {0.3, 0.4, 0.5}, .normal = {0.1, 1.0, 0.3}, .on = {}, .id = {}};
-    for (const char* extension : {".obj", ".ply", ".stl", ".vs3"}) {
-      const Scene other = again(scene, extension);
-      ASSERT_EQ(other.patches().size(), scene.patches().size()) << name << extension;
-      for (std::size_t i = 0; i < scene.patches().size(); ++i) {
-        const Selection patch{PatchId(static_cast<std::uint32_t>(i)), std::nullopt};
-        EXPECT_EQ(exact_form_factor(other, receiver, ExactSource(other, patch)).value,
-                  exact_form_factor(scene, receiver, ExactSource(scene, patch)).value)
-            << name << extension;
-      }
-    }
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -12,52 +11,7 @@
 namespace exactff {
 namespace {
 
-using Rings = std::vector<std::vector<std::uint32_t>>;
 using validation::complaint;
-
-// A unit cube with one patch per side, fronts outwards; corners are not shared between faces.
-struct Cube {
-  SceneBuilder builder{"cube"};
-  MaterialId material = builder.add_material({"grey", {0.5, 0.5, 0.5}, {}});
-
-  void add_side(const std::string& name, const std::vector<Vec3>& corners) {
-    std::vector<std::uint32_t> ring;
-    for (const Vec3& corner : corners) ring.push_back(builder.add_vertex(corner));
-    builder.add_face(builder.patch(name), material, {ring});
-  }
-
-  void add_all_but_top() {
-    add_side("bottom", {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}});
-    add_side("front", {{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}});
-    add_side("right", {{1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1}});
-    add_side("back", {{1, 1, 0}, {0, 1, 0}, {0, 1, 1}, {1, 1, 1}});
-    add_side("left", {{0, 1, 0}, {0, 0, 0}, {0, 0, 1}, {0, 1, 1}});
-  }
-};
-
-TEST(SceneTopology, ClosedSolidHasNoOpenEdges) {
-  Cube cube;
-  cube.add_all_but_top();
-  cube.add_side("top", {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {-0.0, 1, 1}});
-  EXPECT_EQ(cube.builder.build().open_edge_count(), 0U);
-}
-
-TEST(SceneTopology, MissingSideLeavesItsEdgesOpen) {
-  Cube cube;
-  cube.add_all_but_top();
-  EXPECT_EQ(cube.builder.build().open_edge_count(), 4U);
-}
-
-TEST(SceneTopology, KeyholeBridgesAndIgnoredFacesOpenNothing) {
-  SceneBuilder builder;
-  const MaterialId material = builder.add_material({});
-  for (const Vec3& v : {Vec3{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {0, 8, 0}, {2, 2, 0}, {4, 2, 0}, {4, 5, 0}}) {
-    builder.add_vertex(v);
-  }
-  builder.add_face(builder.patch("a"), material, {{0, 4, 6, 5, 4, 0, 1, 2, 3}});
-  builder.add_face(builder.patch("a"), material, {{4, 5, 4}});
-  EXPECT_EQ(builder.build().open_edge_count(), 7U);
-}
 
 // Patches: wall (faces 1 to 3, the second without area), "wall:1" (one face), lamp (emits, one face).
 SceneBuilder rooms(SceneOptions options = {}) {
@@ -116,15 +70,6 @@ TEST(SceneNames, UnknownNamesListTheClosest) {
   for (const char* name : {"", ":", "lamp:", "lamp:x", "lamp:-1", "lamp:+1", "lamp:1 ", "lamp:99999999999999999999"}) {
     EXPECT_THROW((void)scene.select(name), InputError) << name;
   }
-}
-
-TEST(SceneNames, ManyPatchesAreNotAllListed) {
-  SceneBuilder builder;
-  for (int i = 0; i < 50; ++i) (void)builder.patch("patch" + std::to_string(i));
-  const Scene scene = builder.build();
-  EXPECT_EQ(complaint([&] { (void)scene.select("patch77"); }),
-            "there is no patch named 'patch77' (names must match exactly); the closest of its 50 patches are: "
-            "'patch7', 'patch17', 'patch27', 'patch37', 'patch47', 'patch0'");
 }
 
 // One triangle for each name, or a face without area after a '-'.
@@ -213,17 +158,6 @@ TEST(SceneFaces, IgnoredFacesAreKeptButStandForNothing) {
   EXPECT_EQ(scene.warnings()[0].message(), "rooms.obj:11: face 'wall:2' has no area and is ignored");
 }
 
-TEST(SceneFaces, PiecesLeadToTheirFacesAndCorners) {
-  const Scene scene = rooms().build();
-  for (std::size_t f = 0; f < scene.faces().size(); ++f) {
-    const auto id = static_cast<FaceId>(f);
-    for (const Piece& piece : scene.pieces_of(id)) {
-      EXPECT_EQ(piece.face, id);
-      EXPECT_EQ(std::vector(scene.corners(piece).begin(), scene.corners(piece).end()), scene.face(id).rings[0]);
-    }
-  }
-}
-
 TEST(SceneBuilder, SkipsBadFacesOnRequest) {
   const auto with_bow_tie = [](BadFaces bad_faces) {
     SceneBuilder builder("bow.obj", {bad_faces, PatchMode::kGroups});
@@ -278,13 +212,6 @@ TEST(SceneBuilder, RefusesIndicesBeyondTheVertices) {
   builder.add_vertex({});
   builder.add_face(builder.patch("a"), material, {{0, 0, 7}});
   EXPECT_EQ(complaint([&] { (void)builder.build(); }), "face 'a:1' refers to vertex 8 (there are 1 vertices)");
-}
-
-TEST(SceneBuilder, IsEmptyAfterwards) {
-  SceneBuilder builder = rooms();
-  (void)builder.build();
-  EXPECT_EQ(builder.vertex_count(), 0U);
-  EXPECT_TRUE(builder.build().faces().empty());
 }
 
 TEST(SceneHash, DependsOnWhatAffectsValuesOnly) {

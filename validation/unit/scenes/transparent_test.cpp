@@ -94,44 +94,6 @@ TEST(Transparent, PatchesCanBeSourcesInEveryMethod) {
   }
 }
 
-// Two panes, one behind the other: neither hides the other, not even in one source.
-TEST(Transparent, SourcesDoNotHideThemselves) {
-  PlainScene plain = room(false, 0);
-  add(plain, "panes", square_above(0.7, 1.0));
-  add(plain, "panes", square_above(0.5, 0.6));
-  const Scene opaque = generate::build(plain), through = transparent(opaque, "panes");
-  for (const std::string method : {"exact", "exact:engine=boolean", "hemicube:resolution=64"}) {
-    const auto value = [&](const Scene& scene, const char* source) {
-      return value_at(scene, {0.2, 0.1, 0}, "floor", source, method);
-    };
-    EXPECT_DOUBLE_EQ(value(through, "panes"), value(through, "panes:1") + value(through, "panes:2")) << method;
-    EXPECT_LT(value(opaque, "panes"), 0.9 * value(through, "panes")) << method;
-  }
-}
-
-TEST(Transparent, SourcesAreHiddenByOpaquePatches) {
-  PlainScene plain = room(false, 0);
-  add(plain, "pane", square_above(0.7, 1.9));
-  const Scene through = transparent(generate::build(plain), "pane");
-  plain.patches.erase(plain.patches.begin() + 2);  // the plate
-  const Scene unhidden = transparent(generate::build(plain), "pane");
-  for (const std::string& method : kMethods) {
-    const double value = value_at(through, {0.3, 0, 0}, "floor", "pane", method);
-    EXPECT_GT(value, 0.0) << method;
-    EXPECT_LT(value, value_at(unhidden, {0.3, 0, 0}, "floor", "pane", method)) << method;
-  }
-}
-
-TEST(Transparent, PatchesCanCarryReceivers) {
-  const Scene opaque = generate::build(room(true, 0)), through = transparent(opaque, "window");
-  for (const std::string& method : kMethods) {
-    const double value = value_at(opaque, {0, 0, 1}, "window:1", "lamp", method);
-    EXPECT_GT(value, 0.0) << method;
-    EXPECT_EQ(value_at(through, {0, 0, 1}, "window:1", "lamp", method), value) << method;
-    EXPECT_EQ(value_at(through, {0, 0, 1}, nullptr, "lamp", method), value) << method;
-  }
-}
-
 TEST(Transparent, PatchesAreARecordOfTheScene) {
   const Scene opaque = generate::build(room(true, 0)), through = transparent(opaque, "window");
   EXPECT_NE(through.hash(), opaque.hash());

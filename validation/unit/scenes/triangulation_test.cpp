@@ -36,12 +36,6 @@ Vector newell(const Vertices& vertices, std::span<const std::uint32_t> ring) {
   return twice;
 }
 
-Vector area_of_parts(const Vertices& vertices, const CutFace& face) {
-  Vector sum{};
-  for (const ConvexPart& part : face.parts) sum = sum + newell(vertices, part.corners);
-  return sum;
-}
-
 // Every part turns left or goes straight on, seen along the normal, and its frame turns left.
 void expect_convex(const Vertices& vertices, const CutFace& face, const Vector& normal) {
   const auto turn = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -93,82 +87,13 @@ TEST(CutFace, ConvexPlanarPolygonStaysOnePiece) {
   expect_convex(vertices, face, newell(vertices, iota_ring(0, 5)));
 }
 
-TEST(CutFace, TriangleHasHalfItsNewellVectorAndArea) {
-  const CutFace face = cut_face(flat({{0, 0}, {3, 0}, {0, 4}}), {{0, 1, 2}});
-  EXPECT_EQ(face.newell, (Vec3{0, 0, 6}));
-  EXPECT_EQ(face.area, 6.0);
-  EXPECT_EQ(face.out_of_plane, 0.0);
-}
-
-TEST(CutFace, NonConvexPolygonIsCutIntoFewConvexPartsOfTheSameArea) {
-  const Vertices vertices = tilted({{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4}});
-  const CutFace face = cut_face(vertices, {iota_ring(0, 6)});
-  EXPECT_EQ(face.shape, FaceShape::kPlanar);
-  EXPECT_EQ(face.parts.size(), 2U);
-  EXPECT_EQ(area_of_parts(vertices, face), newell(vertices, iota_ring(0, 6)));
-  expect_convex(vertices, face, newell(vertices, iota_ring(0, 6)));
-}
-
-TEST(CutFace, ReversedRingTurnsTheFront) {
-  const Vertices vertices = tilted({{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4}});
-  const Ring reversed = {5, 4, 3, 2, 1, 0};
-  const CutFace face = cut_face(vertices, {reversed});
-  EXPECT_EQ(area_of_parts(vertices, face), newell(vertices, reversed));
-  expect_convex(vertices, face, newell(vertices, reversed));
-}
-
 const std::vector<std::pair<double, double>> kSquareWithHole = {{0, 0}, {8, 0}, {8, 8}, {0, 8},
                                                                 {2, 2}, {4, 2}, {4, 5}, {2, 5}};
-
-TEST(CutFace, HolesAreLeftOutWhicheverWayTheyRun) {
-  for (const auto& points : {tilted(kSquareWithHole), flat(kSquareWithHole)}) {
-    for (const Ring& hole : {Ring{4, 5, 6, 7}, Ring{7, 6, 5, 4}}) {
-      const CutFace face = cut_face(points, {iota_ring(0, 4), hole});
-      EXPECT_FALSE(face.fault);
-      EXPECT_EQ(area_of_parts(points, face), newell(points, iota_ring(0, 4)) - newell(points, iota_ring(4, 4)));
-      expect_convex(points, face, newell(points, iota_ring(0, 4)));
-    }
-  }
-}
 
 TEST(CutFace, NewellIsTheOuterRingsAndAreaLeavesHolesOut) {
   const CutFace face = cut_face(flat(kSquareWithHole), {iota_ring(0, 4), iota_ring(4, 4)});
   EXPECT_EQ(face.newell, (Vec3{0, 0, 64}));
   EXPECT_EQ(face.area, 58.0);
-}
-
-TEST(CutFace, KeyholeRingEqualsAFaceWithAHole) {
-  const Vertices vertices = tilted(kSquareWithHole);
-  const Ring keyhole = {0, 4, 7, 6, 5, 4, 0, 1, 2, 3};
-  const CutFace face = cut_face(vertices, {keyhole});
-  EXPECT_FALSE(face.fault);
-  EXPECT_EQ(face.shape, FaceShape::kPlanar);
-  EXPECT_EQ(area_of_parts(vertices, face), newell(vertices, keyhole));
-  EXPECT_EQ(area_of_parts(vertices, cut_face(vertices, {iota_ring(0, 4), iota_ring(4, 4)})), newell(vertices, keyhole));
-  expect_convex(vertices, face, newell(vertices, keyhole));
-}
-
-TEST(CutFace, HolesMayTouchTheOuterRingAndEachOther) {
-  // One hole touches the outer ring at a vertex, one touches an edge with a vertex, and both touch each other at a
-  // vertex.
-  const Vertices vertices = flat({{0, 0}, {8, 0}, {8, 8}, {0, 8}, {3, 2}, {2, 4}, {8, 5}, {3, 2}, {5, 0}, {6, 1}});
-  const CutFace face = cut_face(vertices, {iota_ring(0, 4), {0, 4, 5}, {7, 8, 9}});
-  EXPECT_FALSE(face.fault);
-  EXPECT_EQ(face.area, 64.0 - 4.0 - 2.0);
-  expect_convex(vertices, face, newell(vertices, iota_ring(0, 4)));
-}
-
-TEST(CutFace, RingMayTouchItselfAtAVertexOrAnEdge) {
-  const Vertices lobes = flat({{0, 0}, {2, 0}, {2, 2}, {4, 2}, {4, 4}, {2, 4}, {0, 2}});
-  const CutFace at_vertex = cut_face(lobes, {{0, 1, 2, 3, 4, 5, 2, 6}});
-  EXPECT_FALSE(at_vertex.fault);
-  EXPECT_EQ(at_vertex.area, 8.0);
-  // The inner corner (3,0) lies on the first edge.
-  const Vertices notch = flat({{0, 0}, {6, 0}, {6, 4}, {4, 4}, {3, 0}, {2, 4}, {0, 4}});
-  const CutFace at_edge = cut_face(notch, {iota_ring(0, 7)});
-  EXPECT_FALSE(at_edge.fault);
-  EXPECT_EQ(at_edge.area, 20.0);
-  expect_convex(notch, at_edge, newell(notch, iota_ring(0, 7)));
 }
 
 TEST(CutFace, ConsecutiveVerticesAtOnePositionAreDroppedAndTheLowestIndexStays) {
@@ -239,21 +164,6 @@ TEST(CutFace, UnusableFacesSayWhy) {
   }
 }
 
-TEST(CutFace, LargePlanarPolygonsAreFast) {
-  // A comb: 1000 teeth, cut into many parts.
-  std::vector<std::pair<double, double>> points = {{2000, 0}, {2000, 1}};
-  for (int i = 999; i >= 0; --i) {
-    points.emplace_back(2 * i + 1, 2);
-    points.emplace_back(2 * i, 1);
-  }
-  points.emplace_back(0, 0);
-  const Vertices vertices = tilted(points);
-  const Ring ring = iota_ring(0, static_cast<std::uint32_t>(points.size()));
-  const CutFace face = cut_face(vertices, {ring});
-  EXPECT_FALSE(face.fault);
-  EXPECT_EQ(area_of_parts(vertices, face), newell(vertices, ring));
-}
-
 // --- faces that are not planar ---
 
 TEST(EarClipping, QuadrilateralTakesTheDiagonalOfItsLowestIndex) {
@@ -262,24 +172,6 @@ TEST(EarClipping, QuadrilateralTakesTheDiagonalOfItsLowestIndex) {
   // The same square with its corners in the opposite order.
   const Vertices shifted = {{1, 0, 0}, {1, 1, 1}, {0, 1, 0}, {0, 0, 0}};
   EXPECT_EQ(triangles(cut_face(shifted, {{3, 0, 1, 2}})), (std::set<Triangle>{{0, 1, 2}, {0, 2, 3}}));
-}
-
-TEST(EarClipping, QuadrilateralTakesTheOtherDiagonalWhereThatOneIsInvalid) {
-  // An arrowhead whose reflex corner has index 1: only the diagonal through it is inside.
-  const Vertices arrow = {{0, 0, 0}, {1, 1, 0.01}, {4, 0, 0}, {1, 4, 0}};
-  const CutFace face = cut_face(arrow, {{0, 1, 2, 3}});
-  EXPECT_EQ(face.shape, FaceShape::kTriangulated);
-  EXPECT_EQ(triangles(face), (std::set<Triangle>{{0, 1, 3}, {1, 2, 3}}));
-}
-
-TEST(EarClipping, ACornerStraightAlongTheNewellVectorIsNoEar) {
-  // Corner 1 is straight as seen from above (along the Newell vector), but it is lifted.
-  const Vertices vertices = {{0, 0, 0}, {1, 0, 1}, {2, 0, 0}, {1, 2, 1}};
-  const CutFace face = cut_face(vertices, {{0, 1, 2, 3}});
-  ASSERT_FALSE(face.fault);
-  for (const ConvexPart& part : face.parts) {
-    EXPECT_GT(dot(newell(vertices, part.corners), newell(vertices, iota_ring(0, 4))), 0);
-  }
 }
 
 // The rule exactly as it is written, step by step, without optimisations.
@@ -333,7 +225,7 @@ Star random_star(std::mt19937& random, std::uint32_t size) {
 TEST(EarClipping, FollowsTheRuleByTheBookWhateverTheStartAndDirection) {
   std::mt19937 random(20240607);
   int compared = 0;
-  for (int round = 0; round < 16; ++round) {
+  for (int round = 0; round < 40; ++round) {
     Star star = random_star(random, 5 + static_cast<std::uint32_t>(round) % 9);
     const std::set<Triangle> expected = clip_by_the_book(star.vertices, star.ring);
     if (expected.empty()) continue;  // rounding to the lattice made the ring touch itself
@@ -345,41 +237,7 @@ TEST(EarClipping, FollowsTheRuleByTheBookWhateverTheStartAndDirection) {
       EXPECT_EQ(triangles(cut_face(star.vertices, {reversed})), expected) << "round " << round << ", reversed";
     }
   }
-  EXPECT_GT(compared, 12);
-}
-
-TEST(EarClipping, TrianglesKeepTheNewellVectorExactly) {
-  std::mt19937 random(7);
-  const Star star = random_star(random, 41);
-  const CutFace face = cut_face(star.vertices, {star.ring});
-  ASSERT_FALSE(face.fault);
-  EXPECT_EQ(face.parts.size(), 39U);
-  EXPECT_EQ(area_of_parts(star.vertices, face), newell(star.vertices, star.ring));
-  expect_convex(star.vertices, face, newell(star.vertices, star.ring));
-}
-
-TEST(EarClipping, KeyholeRingsAndLobesThatTouchAreCut) {
-  Vertices keyhole = flat(kSquareWithHole);
-  keyhole[2].z = 0.125;
-  const Ring ring = {0, 4, 7, 6, 5, 4, 0, 1, 2, 3};
-  const CutFace face = cut_face(keyhole, {ring});
-  ASSERT_FALSE(face.fault);
-  EXPECT_EQ(face.shape, FaceShape::kTriangulated);
-  EXPECT_EQ(face.parts.size(), 8U);
-  EXPECT_EQ(area_of_parts(keyhole, face), newell(keyhole, ring));
-
-  Vertices lobes = flat({{0, 0}, {2, 0}, {2, 2}, {4, 2}, {4, 4}, {2, 4}, {0, 2}});
-  lobes[0].z = 0.125;
-  const Ring touching = {0, 1, 2, 3, 4, 5, 2, 6};
-  for (std::size_t start = 0; start < touching.size(); ++start) {
-    Ring rotated = touching;
-    std::rotate(rotated.begin(), rotated.begin() + static_cast<std::ptrdiff_t>(start), rotated.end());
-    const CutFace cut = cut_face(lobes, {rotated});
-    ASSERT_FALSE(cut.fault) << cut.fault->what;
-    EXPECT_EQ(cut.parts.size(), 4U);
-    EXPECT_EQ(triangles(cut), triangles(cut_face(lobes, {touching})));
-    EXPECT_EQ(area_of_parts(lobes, cut), newell(lobes, touching));
-  }
+  EXPECT_GT(compared, 30);
 }
 
 TEST(EarClipping, CornersThatCoincideOnlyAsSeenAlongTheNewellVectorMakeNoGap) {
@@ -399,18 +257,6 @@ TEST(EarClipping, CornersThatCoincideOnlyAsSeenAlongTheNewellVectorMakeNoGap) {
   EXPECT_EQ(touching.parts.size(), 4U);
 }
 
-TEST(EarClipping, LargeNearlyPlanarDiscsAreFast) {
-  Vertices vertices;
-  for (int i = 0; i < 3000; ++i) {
-    const double angle = 2 * std::numbers::pi * i / 3000;
-    vertices.push_back({std::cos(angle), std::sin(angle) * 0.8, std::sin(angle) * 0.6});
-  }
-  const CutFace face = cut_face(vertices, {iota_ring(0, 3000)});
-  EXPECT_EQ(face.shape, FaceShape::kTriangulated);
-  EXPECT_EQ(face.parts.size(), 2998U);
-  EXPECT_LT(face.out_of_plane, 1e-15);
-}
-
 TEST(CutFace, DeviationIsTheDistanceFromTheMeanPlaneOverTheDiameter) {
   const CutFace face = cut_face(Vertices{{0, 0, 0}, {1, 0, 0}, {1, 1, 0x1p-20}, {0, 1, 0}}, {iota_ring(0, 4)});
   EXPECT_NEAR(face.out_of_plane, 0x1p-22 / std::numbers::sqrt2, 1e-12);
@@ -421,38 +267,6 @@ TEST(CutFace, DeviationIsTheDistanceFromTheMeanPlaneOverTheDiameter) {
 
 // --- the ends of the doubles ---
 
-Vertices times(Vertices vertices, double factor) {
-  for (Vec3& v : vertices) v = {v.x * factor, v.y * factor, v.z * factor};
-  return vertices;
-}
-
-TEST(CutFace, ExtremeCoordinatesChangeNothingButTheScale) {
-  // 1020 scales the largest coordinates to 2^1023.x, so that their differences overflow a double.
-  const std::vector<std::pair<double, double>> points = {{-8, -8}, {8, -8}, {8, 8}, {-8, 8},
-                                                         {2, 2},   {4, 2},  {4, 5}, {2, 5}};
-  const Vertices unit = flat(points);
-  const CutFace expected = cut_face(unit, {iota_ring(0, 4), iota_ring(4, 4)});
-  for (const int exponent : {-1074, -1020, -600, 600, 1020}) {
-    const Vertices scaled = times(unit, std::ldexp(1.0, exponent));
-    const CutFace face = cut_face(scaled, {iota_ring(0, 4), iota_ring(4, 4)});
-    ASSERT_FALSE(face.fault);
-    EXPECT_EQ(face.parts.size(), expected.parts.size());
-    EXPECT_EQ(area_of_parts(scaled, face), newell(scaled, iota_ring(0, 4)) - newell(scaled, iota_ring(4, 4)));
-    EXPECT_EQ(face.newell, (Vec3{0, 0, 0.5})) << exponent;  // 256 * 4^exponent, scaled into [1/2, 1)
-    EXPECT_TRUE(std::isfinite(face.area) && face.area > 0.0);
-  }
-}
-
-TEST(CutFace, HugeAndTinyCoordinatesMeetInOneFace) {
-  const Vertices vertices = {{0, 0, 0},           {1e300, 0, 0},      {1e300, 1e-300, 0},
-                             {1e-300, 1e-300, 0}, {1e-300, 1e300, 0}, {0, 1e300, 0}};
-  const CutFace face = cut_face(vertices, {iota_ring(0, 6)});
-  ASSERT_FALSE(face.fault);
-  EXPECT_EQ(face.parts.size(), 2U);
-  EXPECT_EQ(area_of_parts(vertices, face), newell(vertices, iota_ring(0, 6)));
-  EXPECT_NEAR(face.area, 2.0, 1e-12);
-}
-
 TEST(CutFace, NewellVectorIsRoundedOnceFromItsExactValue) {
   // Twice the area is 1 + 2^-53 + 2^-106, just above a tie that a sum of rounded products would round down.
   const double h = 0x1p-53;
@@ -460,36 +274,6 @@ TEST(CutFace, NewellVectorIsRoundedOnceFromItsExactValue) {
   const CutFace face = cut_face(vertices, {iota_ring(0, 5)});
   const Vector twice = newell(vertices, iota_ring(0, 5));
   EXPECT_EQ(face.newell.z, kernel::nearest_double(Rational(twice[2] / 2)));
-}
-
-TEST(FacePoints, NearestVectorRoundsLikeTheKernel) {
-  std::mt19937_64 random(11);
-  for (int round = 0; round < 300; ++round) {
-    kernel::ExactVec3 v;
-    const auto integer = [&](int bits) -> kernel::Integer {
-      kernel::Integer value = static_cast<unsigned long>(random());
-      value = value * value + static_cast<unsigned long>(random() % 3);
-      if (round % 3 == 0) value = (value >> 70 << 70) + (random() % 2 == 0 ? 0 : 1);  // near ties and short numbers
-      value >>= static_cast<mp_bitcnt_t>(random() % 128);
-      return (random() % 2 == 0 ? value : -value) << static_cast<mp_bitcnt_t>(bits);
-    };
-    v = {(kernel::Integer(1) << 1000) + integer(900), integer(round % 5 == 0 ? 0 : 800), integer(0)};
-    const long exponent = -900 - static_cast<long>(random() % 400);
-    const Vec3 nearest = nearest_vector(v, exponent);
-    const Rational scale = Rational(1, kernel::Integer(1) << static_cast<mp_bitcnt_t>(-exponent));
-    const double expected[] = {kernel::nearest_double(v.x * scale), kernel::nearest_double(v.y * scale),
-                               kernel::nearest_double(v.z * scale)};
-    EXPECT_EQ(nearest, (Vec3{expected[0], expected[1], expected[2]})) << "round " << round;
-  }
-}
-
-TEST(FacePoints, VectorsOfExtremeLengthAreBroughtNearOne) {
-  const kernel::ExactVec3 v = {3, -1, 0};
-  EXPECT_EQ(nearest_vector(v, 998), (Vec3{0x3p998, -0x1p998, 0}));
-  EXPECT_EQ(nearest_vector(v, 999), (Vec3{0.75, -0.25, 0}));
-  EXPECT_EQ(nearest_vector(v, -901), (Vec3{0x3p-901, -0x1p-901, 0}));
-  EXPECT_EQ(nearest_vector(v, -902), (Vec3{0.75, -0.25, 0}));
-  EXPECT_EQ(nearest_vector({}, 0), (Vec3{}));
 }
 
 }  // namespace

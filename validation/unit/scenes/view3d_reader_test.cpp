@@ -159,10 +159,6 @@ TEST(View3dReader, MalformedRecordsAreNamedByLine) {
   }
 }
 
-TEST(View3dReader, TheContentShowsTheFormat) {
-  EXPECT_EQ(read_scene("T x\nC y\n" + kView3dVertices + "S 1 1 2 3 4 0 0 .9 a\nE\n", "unnamed").patches()[0].name, "a");
-}
-
 TEST(View3dReader, ReadsWaltonsFiles) {
   const auto total = [](const Scene& scene) {
     return std::accumulate(scene.faces().begin(), scene.faces().end(), 0.0,

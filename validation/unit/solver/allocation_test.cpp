@@ -6,12 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <deque>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -156,21 +153,6 @@ std::size_t undecided_count(const std::vector<Second>& seconds) {
   return count_if(seconds, [](const Second& second) { return second.undecided; });
 }
 
-TEST(Allocation, IsNotMadeForTheFloorOfTheCornellBox) {
-  const Scene scene = read_obj(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
-  const ExactSource light(scene, scene.select("light"));
-  std::vector<Pair> pairs;
-  for (const Receiver& receiver : grid_receivers(scene, scene.select("floor"), {32, 32})) {
-    pairs.push_back({receiver, &light});
-  }
-  const std::vector<Second> seconds = ask_twice(scene, pairs);
-  EXPECT_EQ(expect_none_but_by_arb(seconds), 0U);
-  std::set<Outcome> outcomes;
-  for (const Second& second : seconds) outcomes.insert(second.outcome);
-  EXPECT_EQ(outcomes,
-            (std::set{Outcome::kUnoccluded, Outcome::kHiddenByOne, Outcome::kPartlyHidden, Outcome::kHiddenByUnion}));
-}
-
 // Rooms along the axes, whose edges line up: if the filter is uncertain, exact arithmetic decides.
 TEST(Allocation, IsNotMadeBetweenThePatchesOfARoom) {
   for (const char* file : {EXACTFF_DATA_DIR "/scenes/cornell_box.obj", EXACTFF_DATA_DIR "/scenes/blinds_room.obj"}) {
@@ -240,47 +222,6 @@ TEST(Allocation, IsNotMadeToHideAllByAFew) {
     EXPECT_GT(few, 20U);
     EXPECT_EQ(remembered > 20, !from_scratch);
   }
-}
-
-// Three sources in general position: in one plane, in nine planes, and a round one, with occluders in front of and
-// crossing them.
-PlainScene scene_of_three_sources() {
-  PlainScene plain;
-  Random random(1);
-  const auto corner = [&](double low, double high) {
-    return Vec3{random.between(-1, 1), random.between(-1, 1), random.between(low, high)};
-  };
-  const auto add = [&](const char* name, double low, double high) {
-    plain.add_ring(plain.patch(name), {corner(low, high), corner(low, high), corner(low, high)});
-  };
-  add("one", 4, 5);
-  for (int k = 0; k < 9; ++k) add("many", 3, 5);
-  for (int k = 0; k < 12; ++k) add("occluder", 1, 4.5);
-  constexpr int kCorners = 31;
-  std::vector<Vec3> round;
-  for (int k = 0; k < kCorners; ++k) round.push_back({std::cos(-0.2 * k) - 0.3, std::sin(-0.2 * k) + 0.1, 6.0});
-  plain.add_ring(plain.patch("round"), round);
-  return plain;
-}
-
-TEST(Allocation, IsNotMadeWhereSourcesTakeTurns) {
-  const Scene scene = generate::build(scene_of_three_sources());
-  const ExactSource one(scene, scene.select("one")), many(scene, scene.select("many")),
-      round(scene, scene.select("round"));
-  ASSERT_EQ(ExactSourceInside::planes(many).planes.size(), 9U);
-  Random random(2);
-  std::vector<Pair> pairs;
-  for (int i = 0; i < 100; ++i) {
-    Receiver receiver;
-    receiver.point = {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
-    receiver.normal = i % 2 == 0 ? Vec3{0.1, -0.2, 1.0} : Vec3{0.9, 0.3, random.between(-0.2, 0.2)};
-    for (const ExactSource* source : {&one, &many, &round}) pairs.push_back({receiver, source});
-  }
-  const std::vector<Second> seconds = ask_twice(scene, pairs);
-  EXPECT_LE(100 * expect_none_but_by_arb(seconds), 5 * seconds.size());
-  const auto is_partly_hidden = [](const Second& second) { return second.outcome == Outcome::kPartlyHidden; };
-  EXPECT_GT(count_if(seconds, is_partly_hidden), 0U);
-  EXPECT_GT(count_if(seconds, [&](const Second& s) { return s.horizon_clipped && is_partly_hidden(s); }), 0U);
 }
 
 // Piercing triangles, the clipped walls of a room, and a mesh that lines up with x.

@@ -14,6 +14,7 @@
 #include "exactff/models.h"
 #include "exactff/progress.h"
 #include "exactff/receiver.h"
+#include "exactff/view.h"
 #include "files/parallel.h"
 #include "support/program.h"
 #include "unit/outside/sanitized.h"
@@ -65,24 +66,9 @@ TEST_F(OnePair, CanBeCancelledAtEveryQuestion) {
   EXPECT_EQ(again.planes.front().pairs, undisturbed.planes.front().pairs);
 }
 
-TEST_F(OnePair, OfManyDigitsIsCancelledInTheContour) {
-  Patience few(0);
-  const auto digits = [&](int count) { return exact_form_factor(scene_, kUp, source_, {.digits = count}); };
-  Patience endless, more;
-  {
-    const HooksOfThread asked(endless.hooks);
-    (void)digits(10);
-  }
-  {
-    const HooksOfThread asked(more.hooks);
-    (void)digits(100);
-  }
-  EXPECT_GT(more.asked, endless.asked + 100U);
-}
-
 TEST_F(OnePair, OfEveryMethodCanBeCancelled) {
-  for (const char* text : {"exact", "adaptive:eps_B=1e-6", "hemicube:resolution=64", "nettle:splits=16,rays=256",
-                           "wallace:splits=64", "area-sampling:samples=4096"}) {
+  for (const char* text : {"exact", "exact:engine=boolean", "adaptive:eps_B=1e-6", "hemicube:resolution=64",
+                           "nettle:splits=16,rays=256", "wallace:splits=64", "area-sampling:samples=4096"}) {
     const methods::Choice choice = methods::parse(text);
     const auto on_scene = choice.method->prepare(scene_);
     const auto source = on_scene->prepare_source(scene_.select("source"));
@@ -95,6 +81,12 @@ TEST_F(OnePair, OfEveryMethodCanBeCancelled) {
     }
     EXPECT_EQ(evaluator->form_factor(kUp, *source).form_factor, undisturbed) << text;
   }
+}
+
+TEST_F(OnePair, CanBeCancelledInAWholeView) {
+  const Patience patience(1);
+  const HooksOfThread asked(patience.hooks);
+  EXPECT_THROW((void)view(scene_, kUp), Cancelled);
 }
 
 TEST(HooksOfThreads, NestAndEnd) {
@@ -186,16 +178,6 @@ TEST_F(Interruption, EndsOnePairOfThousandsOfDigits) {
   for (const int signal : {SIGINT, SIGTERM}) {
     EXPECT_EQ(interrupted(long_point("@soup:n=30000", {"--digits", "3000"}), signal), "exactff: interrupted\n");
   }
-}
-
-TEST_F(Interruption, EndsThePolygonBooleansAsWell) {
-  EXPECT_EQ(interrupted(long_point("@soup:n=20000", {"--engine", "boolean"})), "exactff: interrupted\n");
-}
-
-TEST_F(Interruption, EndsAWholeView) {
-  EXPECT_EQ(
-      interrupted({"view", "@soup:n=30000", "--at", "0", "0", "0", "--normal", "0", "0", "1", "--digits", "3000"}),
-      "exactff: interrupted\n");
 }
 
 TEST_F(Interruption, EndsTheMakingOfReceivers) {

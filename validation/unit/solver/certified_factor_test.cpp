@@ -1,19 +1,15 @@
-// Certified view factors: the quadrature's remainder, the formula in discs, and known values.
+// Certified view factors: the quadrature's remainder and the formula in discs. view_factor_test.cpp has known values.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
-#include <vector>
 
-#include "exactff/matrix.h"
-#include "exactff/scene_files.h"
 #include "exactff/view_factors.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
 #include "kernel/gauss.h"
-#include "support/program.h"
+#include "unit/solver/known_factors.h"
 #include "unit/solver/visit_cells.h"
 #include "view_factors/certified_integral.h"
 
@@ -21,52 +17,10 @@ namespace exactff {
 namespace {
 
 using generate::PlainScene;
-
-void add(PlainScene& scene, const std::string& name, const std::vector<Vec3>& corners) {
-  scene.add_ring(scene.patch(name), corners);
-}
-
-// Squares that face each other, `gap` apart.
-PlainScene squares(double side, double gap) {
-  PlainScene scene;
-  add(scene, "below", {{0, 0, 0}, {side, 0, 0}, {side, side, 0}, {0, side, 0}});
-  add(scene, "above", {{0, side, gap}, {side, side, gap}, {side, 0, gap}, {0, 0, gap}});
-  return scene;
-}
-
-PlainScene with_plate(PlainScene scene, double side, double plate, double height) {
-  const double low = 0.5 * (side - plate), high = 0.5 * (side + plate);
-  add(scene, "plate", {{low, low, height}, {high, low, height}, {high, high, height}, {low, high, height}});
-  return scene;
-}
-
-PlainScene floor_and_wall() {
-  PlainScene scene;
-  add(scene, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
-  add(scene, "wall", {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}});
-  return scene;
-}
-
-// The six faces of a box, as patches; seen from outside, or from inside.
-void add_box(PlainScene& scene, const std::string& name, const Vec3& l, const Vec3& h, bool inside) {
-  const std::vector<std::vector<Vec3>> faces = {{{l.x, l.y, l.z}, {l.x, h.y, l.z}, {h.x, h.y, l.z}, {h.x, l.y, l.z}},
-                                                {{l.x, l.y, h.z}, {h.x, l.y, h.z}, {h.x, h.y, h.z}, {l.x, h.y, h.z}},
-                                                {{l.x, l.y, l.z}, {h.x, l.y, l.z}, {h.x, l.y, h.z}, {l.x, l.y, h.z}},
-                                                {{l.x, h.y, l.z}, {l.x, h.y, h.z}, {h.x, h.y, h.z}, {h.x, h.y, l.z}},
-                                                {{l.x, l.y, l.z}, {l.x, l.y, h.z}, {l.x, h.y, h.z}, {l.x, h.y, l.z}},
-                                                {{h.x, l.y, l.z}, {h.x, h.y, l.z}, {h.x, h.y, h.z}, {h.x, l.y, h.z}}};
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    std::vector<Vec3> corners = faces[i];
-    if (inside) std::ranges::reverse(corners);
-    add(scene, name + std::to_string(i), corners);
-  }
-}
-
-std::vector<Selection> all_patches(const Scene& scene) {
-  std::vector<Selection> patches;
-  for (std::size_t i = 0; i < scene.patches().size(); ++i) patches.push_back({PatchId(i), {}, scene.id()});
-  return patches;
-}
+using validation::add;
+using validation::floor_and_wall;
+using validation::plates;
+using validation::plates_with_plate;
 
 ViewFactor certified(const Scene& scene, const char* from, const char* to, double accuracy,
                      std::size_t budget = 100000) {
@@ -74,79 +28,9 @@ ViewFactor certified(const Scene& scene, const char* from, const char* to, doubl
                      {.accuracy = accuracy, .budget = budget, .certify = true});
 }
 
-void expect_certified(const PlainScene& plain, const char* from, const char* to, double truth) {
-  const Scene scene = generate::build(plain);
-  for (const double accuracy : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}) {
-    for (const bool forth : {true, false}) {
-      const ViewFactor f = forth ? certified(scene, from, to, accuracy) : certified(scene, to, from, accuracy);
-      EXPECT_EQ(f.claim, Claim::kCertified);
-      EXPECT_TRUE(f.accurate);
-      EXPECT_LE(f.lower, truth) << accuracy << ' ' << from;
-      EXPECT_GE(f.upper, truth) << accuracy << ' ' << from;
-      EXPECT_LE(f.upper - f.lower, accuracy);
-    }
-  }
-}
-
-TEST(CertifiedFactor, OfSquaresHoldsTheKnownValue) {
-  expect_certified(squares(1.0, 1.0), "below", "above", 0.199824895698387383041599251193);
-  expect_certified(squares(2.0, 1.0), "below", "above", 0.415253283577146735374144917);
-  expect_certified(squares(1.0, 10.0), "below", "above", 0.00316205683875760162512871788517);
-  expect_certified(squares(1.0, 100.0), "below", "above", 3.18288667328291964442604e-5);
-  expect_certified(squares(1.0, 1000.0), "below", "above", 3.18309673977380257770e-7);
-}
-
-TEST(CertifiedFactor, UpToACommonEdgeHoldsTheKnownValue) {
-  expect_certified(floor_and_wall(), "floor", "wall", 0.200043776075403154239600187202);
-}
-
-TEST(CertifiedFactor, BehindAPlateHoldsTheKnownValue) {
-  expect_certified(with_plate(squares(1.0, 1.0), 1.0, 0.5, 0.75), "below", "above", 0.115620602132415020312711990740);
-  expect_certified(with_plate(squares(2.0, 1.0), 2.0, 0.9, 0.75), "below", "above", 0.2828875141866424869);
-}
-
-// Every row adds up to 1, and an estimate that is much better than the accuracy lies in every interval.
-void expect_closed_room(const Scene& scene, double accuracy) {
-  const std::vector<Selection> all = all_patches(scene);
-  const matrix::Factors proved =
-      matrix::compute(scene, all, all, {.factors = {.accuracy = accuracy, .certify = true}}).factors;
-  const matrix::Factors estimated =
-      matrix::compute(scene, all, all, {.factors = {.accuracy = 1e-3 * accuracy}}).factors;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    double lower = 0.0, upper = 0.0;
-    for (std::size_t j = 0; j < all.size(); ++j) {
-      const ViewFactor &f = proved.at(i, j), &close = estimated.at(i, j);
-      EXPECT_TRUE(f.claim == Claim::kCertified || (f.claim == Claim::kZero && f.upper == 0.0));
-      EXPECT_LE(f.upper - f.lower, accuracy * (1.0 + 1e-12));
-      EXPECT_LE(f.lower, close.upper) << i << ' ' << j;
-      EXPECT_GE(f.upper, close.lower) << i << ' ' << j;
-      lower += f.lower;
-      upper += f.upper;
-    }
-    EXPECT_LE(lower, 1.0) << i;
-    EXPECT_GE(upper, 1.0) << i;
-  }
-}
-
-TEST(CertifiedFactor, OfClosedRoomsHoldOne) {
-  PlainScene room;
-  add_box(room, "wall", {0, 0, 0}, {4, 4, 4}, true);
-  add_box(room, "cube", {1.5, 1.5, 1.5}, {2.5, 2.5, 2.5}, false);
-  expect_closed_room(generate::build(room), 1e-6);
-}
-
-TEST(CertifiedFactor, OfTheLShapedRoomHoldsTheKnownValue) {
-  const Scene scene = read_scene(EXACTFF_DATA_DIR "/scenes/formats/test4.vs3");
-  const std::vector<Selection> all = all_patches(scene);
-  const ViewFactor f = view_factor(scene, all[0], all[5], {.accuracy = 1e-10, .certify = true});
-  EXPECT_LE(f.lower, 0.1823559036685958);
-  EXPECT_GE(f.upper, 0.1823559036685958);
-  EXPECT_LE(f.upper - f.lower, 1e-10);
-}
-
 // Three edges may meet in one direction, and the budget may not suffice: the claim stays, and the width is honest.
 TEST(CertifiedFactor, KeepsItsClaimInACrowd) {
-  PlainScene plain = squares(1.0, 1.0);
+  PlainScene plain = plates(1.0, 1.0);
   add(plain, "a", {{0.1, 0.1, 0.3}, {0.9, 0.2, 0.4}, {0.4, 0.8, 0.35}});
   add(plain, "b", {{0.2, 0.05, 0.5}, {0.95, 0.6, 0.55}, {0.3, 0.9, 0.6}});
   add(plain, "c", {{0.5, 0.1, 0.7}, {0.8, 0.9, 0.65}, {0.1, 0.5, 0.75}});
@@ -162,32 +46,6 @@ TEST(CertifiedFactor, KeepsItsClaimInACrowd) {
     EXPECT_LE(coarse.lower, fine.upper);
     EXPECT_GE(coarse.upper, fine.lower);
   }
-}
-
-TEST(CertifiedFactor, IsTheSameForAnyUnitOfLengthAndAnyNumberOfThreads) {
-  const auto scaled = [](double unit) {
-    PlainScene plain = with_plate(squares(1.0, 1.0), 1.0, 0.5, 0.75);
-    for (Vec3& v : plain.vertices) v = {unit * v.x, unit * v.y, unit * v.z};
-    return generate::build(plain);
-  };
-  const ViewFactor one = certified(scaled(1.0), "below", "above", 1e-8);
-  for (const double unit : {0x1p-300, 0x1p200}) {
-    const ViewFactor f = certified(scaled(unit), "below", "above", 1e-8);
-    EXPECT_EQ(f.lower, one.lower);
-    EXPECT_EQ(f.upper, one.upper);
-  }
-  const Scene scene = scaled(1.0);
-  const std::vector<Selection> all = all_patches(scene);
-  const ViewFactorOptions options{.certify = true};
-  const matrix::Factors a = matrix::compute(scene, all, all, {.factors = options, .threads = 1}).factors;
-  const matrix::Factors b = matrix::compute(scene, all, all, {.factors = options, .threads = 3}).factors;
-  for (std::size_t e = 0; e < a.entries.size(); ++e) EXPECT_EQ(a.entries[e].lower, b.entries[e].lower);
-}
-
-TEST(CertifiedFactor, IsBetweenTheOthersInStrength) {
-  EXPECT_EQ(to_string(Claim::kCertified), "certified");
-  EXPECT_EQ(matrix::weaker(Claim::kCertified, Claim::kEstimated), Claim::kEstimated);
-  EXPECT_EQ(matrix::weaker(Claim::kZero, Claim::kCertified), Claim::kCertified);
 }
 
 // --- The remainder ---
@@ -238,7 +96,7 @@ using view_factors::DiscFormula;
 using view_factors::Formula;
 
 TEST(DiscFormula, HoldsTheFormulaInBalls) {
-  PlainScene turned = with_plate(squares(1.0, 1.0), 1.0, 0.5, 0.75);
+  PlainScene turned = plates_with_plate(1.0, 0.5, 0.75);
   add(turned, "turned", {{0.3, 0.2, 0.4}, {0.7, 0.3, 0.45}, {0.5, 0.8, 0.35}});
   for (const auto& [scene, from, to] :
        {std::tuple{generate::build(turned), "below", "above"}, std::tuple{generate::build(turned), "turned", "above"},
@@ -287,7 +145,7 @@ TEST(DiscFormula, HasTheSameBitsFourAtATime) {
       }
     }
   };
-  visit_cells(generate::build(with_plate(squares(1.0, 1.0), 1.0, 0.5, 0.75)), "below", "above", judge);
+  visit_cells(generate::build(plates_with_plate(1.0, 0.5, 0.75)), "below", "above", judge);
   visit_cells(generate::build(floor_and_wall()), "floor", "wall", judge);
   EXPECT_GT(judged, 100);
   EXPECT_GT(failed, 20);
@@ -299,7 +157,7 @@ TEST(DiscFormula, IsBoundedOnTheEllipse) {
   using view_factors::bound_on_ellipse;
   for (const double gap : {2.0, 100.0}) {
     std::size_t judged = 0;
-    visit_cells(generate::build(squares(1.0, gap)), "below", "above", [&](const Formula& formula, const Cell& cell) {
+    visit_cells(generate::build(plates(1.0, gap)), "below", "above", [&](const Formula& formula, const Cell& cell) {
       DiscFormula discs(formula, cell);
       discs.take({0, 1, 2, 2});
       for (const double rho : {1.5, 2.0, 3.0, 5.0}) {
@@ -316,21 +174,6 @@ TEST(DiscFormula, IsBoundedOnTheEllipse) {
     });
     EXPECT_GT(judged, 3U);
   }
-}
-
-// --- The command ---
-
-TEST(CertifiedMatrix, IsWrittenOnRequest) {
-  const std::string scene = EXACTFF_DATA_DIR "/scenes/formats/test4.vs3";
-  const auto run = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {"matrix", scene, "--plain"});
-    return validation::run_program(EXACTFF_PROGRAM, arguments);
-  };
-  const validation::ProgramRun proved = run({"--certify"}), estimated = run({});
-  EXPECT_EQ(proved.exit_code, 0);
-  EXPECT_NE(proved.output.find("\tcertified\tcells\n"), std::string::npos);
-  EXPECT_EQ(proved.output.find("estimated"), std::string::npos);
-  EXPECT_EQ(estimated.output.find("certified"), std::string::npos);
 }
 
 }  // namespace

@@ -20,9 +20,6 @@ using generate::Random;
 using kernel::Rational;
 using Exact3 = std::array<Rational, 3>;
 
-constexpr double kOfCoefficient = 0x1p-37;  // the error of a coefficient, by the header
-constexpr double kAdded = 0x1p-34;          // what the bounds are moved by
-constexpr double kLengthMargin = 1.0 + 0x1p-20;
 constexpr double kOfNormal = 1.003;  // the error of a normal, by the header
 constexpr long kBits = 200;
 
@@ -80,18 +77,6 @@ class Event {
     return exact_cross(normal(i, x), normal((i + 1) % 3, x));
   }
   [[nodiscard]] Rational order(const Exact3& x) const { return exact_dot(normal(0, x), crossing(1, x)); }
-  // The largest coefficient of the polar form.
-  [[nodiscard]] double largest_order() const {
-    Rational largest(0);
-    for (std::size_t i = 0; i < cell_.corners.size(); ++i) {
-      for (std::size_t j = 0; j <= i; ++j) {
-        const Exact3 y = rational_place(cell_.corners[i]), z = rational_place(cell_.corners[j]);
-        const Rational b = 2 * order(Rational(1, 2) * (y + z)) - (order(y) + order(z)) / 2;
-        largest = std::max(largest, Rational(abs(b)));
-      }
-    }
-    return kernel::nearest_double(largest);
-  }
   // Corners, and the middles between them.
   [[nodiscard]] std::vector<Exact3> places() const {
     std::vector<Exact3> result;
@@ -150,31 +135,6 @@ Event some_event(Random& random, double size, bool at_limits) {
 
 bool has_crossings(const TriangleBounds& bounds) {
   return std::ranges::all_of(bounds.cross, [](double cross) { return cross > 0.0; });
-}
-
-TEST(EventBound, CoefficientsErrByLessThanIsProved) {
-  Random random(1);
-  for (int round = 0; round < 100; ++round) {
-    const Event event = some_event(random, std::ldexp(1.0, -random.integer(0, 30)), random.one_in(2));
-    const double added = event.bounds().order - event.largest_order();
-    ASSERT_GE(added, kAdded - kOfCoefficient) << round;
-    ASSERT_LE(added, kAdded + kOfCoefficient) << round;
-  }
-}
-
-TEST(EventBound, CrossingsOfAPointAreJustBelowTheTruth) {
-  Random random(2);
-  for (int round = 0; round < 200; ++round) {
-    Event event;
-    for (int line = 0; line < 3; ++line) event.add_line(somewhere(random), at_corner(random));
-    event.add_corner(somewhere(random));
-    const TriangleBounds bounds = event.bounds();
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double truth = exact_length(event.crossing(i, event.places().front()));
-      ASSERT_LE(bounds.cross[i], truth) << round;
-      ASSERT_GE(bounds.cross[i], truth / (kLengthMargin * kLengthMargin) - kAdded - kOfCoefficient) << round;
-    }
-  }
 }
 
 TEST(EventBound, BoundsHoldOnTheWholeCell) {
@@ -239,18 +199,6 @@ TEST(EventBound, TimesItsMarginIsNotBelowTheTruth) {
   }
   EXPECT_GE(known, 20);
   EXPECT_GE(tight, 10);  // with a margin below 1 / kEventMargin this test would fail
-}
-
-TEST(EventBound, IsInfiniteWhereCrossingsMayBeOpposite) {
-  Random random(6);
-  int unknown = 0;
-  for (int round = 0; round < 1000; ++round) {
-    const Event event = some_event(random, std::ldexp(1.0, -random.integer(0, 3)), false);
-    if (has_crossings(event.bounds())) continue;
-    ++unknown;
-    ASSERT_EQ(event.bound(), HUGE_VAL) << round;
-  }
-  EXPECT_GE(unknown, 50);
 }
 
 }  // namespace

@@ -104,15 +104,6 @@ TEST_F(AnalysesOfStrips, TakeNoMorePointsOrEffortThanTheyMay) {
   EXPECT_GT(analyses.points(), 3500U);
 }
 
-TEST_F(AnalysesOfStrips, AreAsNarrowAsExpected) {
-  Strip strip(parts(1.0, 1.0), exact_.units, -1.0, 4.0);
-  InterimAnalyses analyses(strip, exact_.units, kRisk, 0);
-  (void)analyses.analyse();
-  ASSERT_TRUE(analyses.prepare(0.01, kAnyEffort, 1 << 20));
-  const InterimAnalyses::Mean found = analyses.analyse();
-  EXPECT_LE(1.0 - found.value + found.error, 0.01);
-}
-
 // Analyses before, of which the risk is one with theirs, make them wider.
 TEST_F(AnalysesOfStrips, AreWiderAfterOthers) {
   Strip strip(parts(1.0, 1.0), exact_.units, 0.25, 0.5);
@@ -120,61 +111,6 @@ TEST_F(AnalysesOfStrips, AreWiderAfterOthers) {
   EXPECT_EQ(later.count(), 100U);
   EXPECT_LT(first.analyse().error, later.analyse().error);
   EXPECT_EQ(later.count(), 101U);
-}
-
-// A quadratic function, of which less is left to chance the better it is known: with four times the points, much less
-// than a quarter of the error. Its bounds say so, or only its range.
-class Bowl : public SampledFunction {
- public:
-  Bowl(std::vector<Part> parts, const Units& units, bool has_change)
-      : SampledFunction(std::move(parts)), units_(units), has_change_(has_change) {}
-  [[nodiscard]] Span span(const Tile& tile, bool) override {
-    Span span{.range = 0.5};
-    if (!has_change_) return span;
-    const std::vector<Vec3> corners = corners_of(parts()[tile.part], tile);
-    const Vec3 middle = sides_of(parts()[tile.part], tile).at(middle_of(tile));
-    span.change = 0.0;
-    for (const Vec3& corner : corners) {
-      span.change = std::max(span.change, scaled(0.5 * std::sqrt(2.0) * kernel::distance(corner, middle)));
-    }
-    return span;
-  }
-  [[nodiscard]] std::optional<double> at(const Point& point, std::size_t) override {
-    return 0.25 * (std::pow(scaled(point.at.x), 2.0) + std::pow(scaled(point.at.y), 2.0));
-  }
-  [[nodiscard]] std::uint64_t effort() const override { return 0; }
-
- private:
-  [[nodiscard]] double scaled(double x) const {
-    return std::ldexp(x, static_cast<int>(units_.exponent + units_.shift));
-  }
-
-  const Units& units_;
-  bool has_change_;
-};
-
-TEST_F(AnalysesOfStrips, KnowSmoothFunctionsWell) {
-  std::vector<Part> square = parts(1.0, 1.0);
-  square.pop_back();
-  for (const bool has_change : {false, true}) {
-    Bowl bowl(square, exact_.units, has_change);
-    InterimAnalyses analyses(bowl, exact_.units, kRisk, 0);
-    std::vector<double> errors;
-    for (const std::size_t points : {0, 1000, 5000, 21000}) {
-      const bool is_prepared = points == 0 || analyses.prepare_for_all(points);
-      ASSERT_TRUE(is_prepared);
-      const InterimAnalyses::Mean found = analyses.analyse();
-      // Once there are enough of them, control variates leave little, but for their slopes if these may be no steeper.
-      const double share = points < 5000 ? 1.0 : has_change ? 0.3 : 0.01;
-      EXPECT_LE(std::abs(found.value - 1.0 / 6.0), share * found.error) << has_change;
-      errors.push_back(found.error);
-    }
-    // r L alone, if the range is all that is known.
-    const double least = 0.25 * std::log(2e6) / static_cast<double>(analyses.strata());
-    EXPECT_GT(errors.back(), has_change ? 0.0 : least);
-    EXPECT_LT(errors[3], (has_change ? 0.3 : 1.5) * least);
-    EXPECT_LT(errors[3], (has_change ? 0.2 : 0.3) * errors[2]);
-  }
 }
 
 // 0 or 1 at each place, whatever it is nearby.

@@ -175,19 +175,6 @@ TEST_F(KeptResult, OutlivesAnException) {
   expect_as_anew(plain, {});
 }
 
-TEST(Enclosure, SetIsAsOneMadeAnew) {
-  Enclosure kept;
-  for (const double value : {0.25, 0.0, 0x1p-500, 3.0}) {
-    Ball ball;
-    arb_set_d(ball.get(), value);
-    arb_add_error_2exp_si(ball.get(), -80);
-    if (value == 0.0) arb_zero(ball.get());
-    EnclosureInside::set(kept, ball);
-    EXPECT_EQ(kept.midpoint(), EnclosureInside::of(ball).midpoint());
-    EXPECT_EQ(kept.radius(), EnclosureInside::of(ball).radius());
-  }
-}
-
 TEST(Enclosure, IsItsOwnAfterACopy) {
   Ball half;
   arb_set_d(half.get(), 0.5);

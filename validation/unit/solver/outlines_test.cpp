@@ -106,35 +106,5 @@ TEST(Outlines, DecidesExactlyWhereTheFiltersDecline) {
   }
 }
 
-TEST(Outlines, OwnCornersLieOnTheirEdgesWithoutArithmetic) {
-  PlainScene plain;
-  plain.add_ring(plain.patch("source"), {{-1, 1, 1}, {1, 1, 1}, {1, -1, 1}, {-1, -1, 1}});
-  const Scene scene = generate::build(plain);
-  Outlines outlines;
-  outlines.start(scene, {}, 1.0);
-  add_pieces(scene, outlines);
-  for (const Outlines::Edge& edge : outlines.edges()) {
-    for (const CornerId end : {edge.a, edge.b}) {
-      EXPECT_EQ(outlines.side(edge, end), 0);
-      EXPECT_EQ(outlines.height(edge, end).value, 0.0);
-      EXPECT_EQ(outlines.height(edge, end).error, 0.0);
-    }
-    for (const Outlines::Edge& other : outlines.edges()) EXPECT_GE(outlines.side(edge, other.a), 0);
-  }
-}
-
-TEST(Outlines, VerticesAtOnePositionAreOneCorner) {
-  PlainScene plain;
-  for (int i = 0; i < 2; ++i) plain.add_ring(plain.patch("source"), {{0, 0, 1}, {0, 1, 1}, {1, 0, 1}});
-  const Scene scene = generate::build(plain);
-  Outlines outlines;
-  for (int run = 0; run < 2; ++run) {
-    outlines.start(scene, {}, 1.0);
-    add_pieces(scene, outlines);
-    EXPECT_EQ(outlines.corner_count(), 3U);
-    EXPECT_EQ(outlines.edge(0).a, outlines.edge(3).a);
-  }
-}
-
 }  // namespace
 }  // namespace exactff::visibility

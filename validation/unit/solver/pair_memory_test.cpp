@@ -31,63 +31,6 @@ TEST(PairMemory, SignsHoldForTheCellAndItsParts) {
   EXPECT_EQ(memory.sign(1, 2), kUnasked);
 }
 
-// After other cells, and after another pair has asked for the same signs.
-TEST(PairMemory, ResumesAtACellOfBefore) {
-  PairMemory memory;
-  memory.start(0, 4, 5);
-  memory.keep_sign(1, 2, -1);
-  memory.enter(1);
-  memory.keep_sign(3, 4, 1);
-  const PairMemory::Way way = memory.way();
-  memory.enter(1);
-  memory.keep_sign(2, 2, 1);
-  memory.start(1, 4, 5);
-  EXPECT_EQ(memory.sign(1, 2), kUnasked);
-  memory.keep_sign(2, 3, 1);
-  memory.resume(0, 4, 5, way);
-  EXPECT_EQ(memory.sign(3, 4), 1);
-  memory.enter(2);
-  EXPECT_EQ(memory.sign(1, 2), -1);
-  EXPECT_EQ(memory.sign(3, 4), 1);
-  EXPECT_EQ(memory.sign(2, 2), kUnasked);
-  EXPECT_EQ(memory.sign(2, 3), kUnasked);
-}
-
-TEST(PairMemory, MixedSignsHoldForTheCellAlone) {
-  PairMemory memory;
-  memory.start(0, 4, 5);
-  memory.keep_sign(0, 0, kMixed);
-  memory.keep_sign(0, 1, kMixedAndSeen);
-  EXPECT_EQ(memory.sign(0, 0), kMixed);
-  EXPECT_EQ(memory.sign(0, 1), kMixedAndSeen);
-  memory.enter(1);
-  EXPECT_EQ(memory.sign(0, 0), kUnasked);
-  EXPECT_EQ(memory.sign(0, 1), kUnasked);
-}
-
-TEST(PairMemory, TellsPairsApart) {
-  PairMemory memory;
-  memory.start(0, 4, 5);
-  memory.keep_sign(1, 2, 1);
-  memory.start(1, 4, 5);
-  EXPECT_EQ(memory.sign(1, 2), kUnasked);
-  const Units units{0, 1};
-  Points one(units), two(units);
-  const auto add = [&](Points& points, const std::vector<Vec3>& corners) {
-    std::vector<PointId> ids;
-    for (const Vec3& corner : corners) ids.push_back(points.add(point_of(corner, units)));
-    return points.ring(ids);
-  };
-  add(one, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
-  add(two, {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}});
-  memory.start(0, 3, 3);
-  const Homogeneous first = memory.plane(one, 0, 2)->exact;
-  memory.start(1, 3, 3);
-  EXPECT_NE(memory.plane(two, 0, 2)->exact, first);
-  memory.start(0, 3, 3);
-  EXPECT_EQ(memory.plane(one, 0, 2)->exact, first);
-}
-
 // Signs that share a place push one another out; none is mistaken for another.
 TEST(PairMemory, ForgetsButNeverErrs) {
   constexpr LineId kLines = 3000;
@@ -107,34 +50,6 @@ TEST(PairMemory, ForgetsButNeverErrs) {
     }
   }
   EXPECT_GT(known, 1000U);
-}
-
-// By integers alone.
-int exact_side(const Plane& plane, const Point& point) {
-  Integer sum = 0;
-  for (std::size_t i = 0; i < 4; ++i) sum += plane.exact[i] * point.exact[i];
-  return sgn(sum);
-}
-
-// Of short coordinates, from the first one that is rounded to those of which nothing is.
-TEST(RoundedPlane, IsExactForShortCoordinates) {
-  generate::Random random(22);
-  std::size_t in_plane = 0;
-  for (int trial = 0; trial < 20000; ++trial) {
-    const int bits = random.integer(2, 26);
-    const Units units{0, bits};
-    const int most = random.one_in(2) ? (1 << bits) - 1 : 3;
-    const auto coordinate = [&] { return static_cast<double>(random.integer(-most, most)); };
-    std::vector<Point> p;
-    for (int i = 0; i < 4; ++i) p.push_back(point_of({coordinate(), coordinate(), coordinate()}, units));
-    const Plane plane = make_plane(join(p[0], p[1], p[2]), units);
-    const int exact = exact_side(plane, p[3]);
-    EXPECT_EQ(side_of(plane, p[3]), exact);
-    const int found = RoundedPlane(p[0], p[1], p[2]).side_of(p[3]);
-    EXPECT_TRUE(found == exact || (found == kernel::kUncertain && most >= 1 << 15));
-    in_plane += exact == 0 ? 1U : 0U;
-  }
-  EXPECT_GT(in_plane, 500U);
 }
 
 // Points in or near a plane, on a grid in which many are exactly in it.

@@ -94,20 +94,5 @@ TEST(PatchParts, OfTrianglesGiveTheFactorsOfPolygons) {
   }
 }
 
-// A sheet halfway between two patches of its size hides each from the other.
-TEST(PatchParts, AreHiddenByASheet) {
-  for (const int n : {0, 1, 4}) {
-    PlainScene plain;
-    add_tiles(plain, "floor", {0, 0, 0}, true, n);
-    add_tiles(plain, "lid", {0, 0, 0.5}, n % 2 == 0, n);
-    add_tiles(plain, "ceiling", {0, 0, 1}, false, n);
-    const Scene scene = generate::build(plain);
-    EXPECT_EQ(view_factor(scene, scene.select("floor"), scene.select("ceiling")).claim, Claim::kZero);
-    EXPECT_GT(view_factor(scene, scene.select("floor"), scene.select("lid")).upper +
-                  view_factor(scene, scene.select("lid"), scene.select("ceiling")).upper,
-              0.4);
-  }
-}
-
 }  // namespace
 }  // namespace exactff::view_factors

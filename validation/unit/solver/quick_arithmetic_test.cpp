@@ -1,13 +1,12 @@
 // Arithmetic in double-double with running error bounds: numbers, vectors and angles.
-#include "contour/quick_arithmetic.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "exactff/enclosure.h"
+#include "contour/quick_angle.h"
+#include "contour/quick_vector.h"
 #include "generate/random.h"
 #include "support/random_scenes.h"
 #include "unit/solver/quick_contour_support.h"
@@ -95,16 +94,6 @@ TEST_F(Arithmetic, ProductsKeepTheirBounds) {
   });
 }
 
-TEST_F(Arithmetic, SumsOfProductsKeepTheirBounds) {
-  expect_sharp_bounds([](Random& random, bool exact) {
-    const Operand a = operand(random, exact);
-    const Operand b = operand(random, exact);
-    const Operand c = operand(random, exact);
-    const Operand d = operand(random, exact);
-    return share(sum_of_products(a.bounded, b.bounded, c.bounded, d.bounded), a.truth * b.truth + c.truth * d.truth);
-  });
-}
-
 TEST_F(Arithmetic, QuotientsKeepTheirBounds) {
   expect_sharp_bounds([](Random& random, bool exact) {
     const Operand x = operand(random, exact);
@@ -124,14 +113,6 @@ TEST_F(Arithmetic, RootsKeepTheirBounds) {
     mpz_sqrt(root.get_mpz_t(), scaled.get_mpz_t());
     return share(square_root(x.bounded), kernel::times_power_of_two(Rational(root), -300));
   });
-}
-
-TEST_F(Arithmetic, DeclinesDivisorsThatMayBeZero) {
-  EXPECT_EQ((Bounded{1} / Bounded{0}).error, kInfinity);
-  EXPECT_EQ((Bounded{1} / Bounded{1, 0, 0x1p-19}).error, kInfinity);
-  EXPECT_EQ(square_root(Bounded{1, 0, 0x1p-19}).error, kInfinity);
-  EXPECT_EQ(square_root(Bounded{-1, 0, 0}).error, kInfinity);
-  EXPECT_EQ(square_root(Bounded{0, 0, 0}).error, kInfinity);
 }
 
 // --- Vectors ---
@@ -196,15 +177,6 @@ TEST_F(VectorArithmetic, CrossProductsKeepTheirBounds) {
   });
 }
 
-TEST_F(VectorArithmetic, DotProductsKeepTheirBounds) {
-  expect_sharp_bounds([](Random& random, bool exact) {
-    const VectorOperand p = vector_operand(random, exact);
-    const VectorOperand q = vector_operand(random, exact);
-    return share(dot(p.bounded, q.bounded),
-                 p.truth[0] * q.truth[0] + p.truth[1] * q.truth[1] + p.truth[2] * q.truth[2]);
-  });
-}
-
 TEST_F(VectorArithmetic, CombinationsKeepTheirBounds) {
   expect_sharp_bounds([](Random& random, bool exact) {
     const VectorOperand p = vector_operand(random, exact);
@@ -239,15 +211,6 @@ TEST_F(VectorArithmetic, NearCancellationsKeepTheirBounds) {
 
 class Angle : public Arithmetic {};
 
-TEST_F(Angle, TheSeriesKeepsItsBound) {
-  for (std::uint64_t seed = 1; seed <= validation::scaled_count(4000); ++seed) {
-    Random random(validation::seed_of(seed));
-    const double hi = random.between(-1, 1) * (random.one_in(2) ? 0x1p-9 : std::exp2(-random.between(9, 200)));
-    const Bounded z = bounded(two_sum(hi, hi * 0x1p-53 * random.between(-1, 1)), 0);
-    ASSERT_TRUE(holds(atan_near_zero(z), true_angle(exactly(z.hi, z.lo), 1))) << seed;
-  }
-}
-
 TEST_F(Angle, AnglesKeepTheirBounds) {
   for (std::uint64_t seed = 1; seed <= validation::scaled_count(4000); ++seed) {
     Random random(validation::seed_of(seed));
@@ -264,17 +227,6 @@ TEST_F(Angle, AnglesKeepTheirBounds) {
       ASSERT_TRUE(holds(angle, true_angle(sine.truth, cosine.truth))) << seed;
       ASSERT_TRUE(!exact || angle.error < 0x1p-99 * std::abs(angle.hi)) << seed;
     }
-  }
-}
-
-TEST_F(Angle, ASineThatMayBeZeroIsNoHindrance) {
-  const Bounded angle = atan2(Bounded{0x1p-60, 0, 0x1p-50}, Bounded{1, 0, 0}, angle_constants());
-  for (const double sine : {0x1p-60 + 0x1p-50, 0x1p-60 - 0x1p-50, 0.0}) {
-    EXPECT_TRUE(holds(angle, true_angle(kernel::to_rational(sine), 1)));
-  }
-  const Bounded right = atan2(Bounded{1, 0, 0}, Bounded{0x1p-60, 0, 0x1p-50}, angle_constants());
-  for (const double cosine : {0x1p-60 + 0x1p-50, 0x1p-60 - 0x1p-50, 0.0}) {
-    EXPECT_TRUE(holds(right, true_angle(1, kernel::to_rational(cosine))));
   }
 }
 

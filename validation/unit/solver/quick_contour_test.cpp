@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
-#include <utility>
 #include <vector>
 
 #include "exactff/enclosure.h"
@@ -21,6 +21,7 @@ using namespace kernel::double_double;
 using generate::Random;
 using kernel::ExactVec3;
 using kernel::Integer;
+using kernel::Rational;
 using kernel::sign;
 
 // Returns true if the double was determined.
@@ -70,46 +71,11 @@ TEST(QuickContour, RoundsEveryTriangleOfModerateSize) {
   EXPECT_EQ(count.found, count.loops);
 }
 
-// Squares that face x at a slant.
-TEST(QuickContour, KeepsItsBitsOfWhatIsPlainlySeen) {
-  const Count count = expect_the_truth_of(200, 501, [](Random& random) {
-    Both both;
-    const double u = random.between(-0.5, 0.5);
-    const double v = random.between(-0.5, 0.5);
-    const auto corner = [&](double s, double t) { both.add(Vec3{s + 0.1, t + 0.3, 2 + u * s + v * t}); };
-    corner(-1, -1);
-    corner(-1, 1);
-    corner(1, 1);
-    corner(1, -1);
-    both.close_loop();
-    EXPECT_LT(relative_error(both.quick()), 0x1p-95);
-    return both;
-  });
-  EXPECT_EQ(count.found, count.loops);
-}
-
-TEST(QuickContour, RoundsNearlyEveryTinyTriangle) {
-  const Count count = expect_the_truth_of(500, 1001, [](Random& random) {
-    Both both = triangle(random, 1e-8);
-    both.close_loop();
-    return both;
-  });
-  RecordProperty("found", static_cast<int>(count.found));
-  EXPECT_GT(count.found, count.loops * 98 / 100);
-}
-
 TEST(QuickContour, RoundsWhatCrossingsLeave) {
   const Count count = expect_the_truth_of(
       500, 2001, [](Random& random) { return cut_triangle(random, std::exp2(random.between(-8, 0))); });
   RecordProperty("found", static_cast<int>(count.found));
   EXPECT_GT(count.found, count.loops * 99 / 100);
-}
-
-TEST(QuickContour, EnclosesTinyLoopsWithCrossings) {
-  const Count count = expect_the_truth_of(
-      500, 3001, [](Random& random) { return cut_triangle(random, std::exp2(random.between(-30, -15))); });
-  RecordProperty("found", static_cast<int>(count.found));
-  EXPECT_GT(count.found, count.loops * 9 / 10);
 }
 
 TEST(QuickContour, EnclosesSlivers) {
@@ -189,96 +155,7 @@ TEST(QuickContour, EnclosesPiecesOfExactDirections) {
   EXPECT_GT(count.found, count.loops * 8 / 10);
 }
 
-TEST(QuickContour, EnclosesCornersOfAnyModerateSize) {
-  const Count count = expect_the_truth_of(500, 8001, [](Random& random) {
-    Both both;
-    const double direction = random.one_in(2) ? 1 : -1;
-    for (int i = 0; i < 5; ++i) {
-      const Vec3 t = random_vector(random, 1);
-      const double size = std::exp2(direction * random.between(0, 199));
-      both.add(Vec3{size * t.x, size * t.y, size * t.z});
-    }
-    const ExactVec3 plane = cross(both.exact[3], both.exact[4]);
-    const bool crosses = sign(dot(plane, both.exact[0])) * sign(dot(plane, both.exact[1])) < 0;
-    both.pieces = {{0, 1, kA, crosses ? crossing(3, 4) : kB}, {1, 2, kA, kB}, {2, 0, kA, kB}};
-    return both;
-  });
-  RecordProperty("found", static_cast<int>(count.found));
-  EXPECT_GT(count.found, count.loops * 8 / 10);
-}
-
-// Every step of the arc tangent table, both ends of each step, in every octant.
-TEST(QuickContour, EnclosesAnglesOfEveryStep) {
-  constexpr int kSteps = 512;
-  for (int k = -kSteps; k <= kSteps; ++k) {
-    for (const bool steep : {false, true}) {
-      for (const int side : {1, -1}) {
-        if (!steep && k == 0) continue;  // a is collinear with b and x
-        Both both;
-        both.normal = {0.3, 0.4, 0.5};
-        both.add(ExactVec3{1, 0, 0});
-        both.add(steep ? ExactVec3{k, side * kSteps, 0} : ExactVec3{side * kSteps, k, 0});
-        both.pieces = {{0, 1, kA, kB}};
-        ASSERT_TRUE(expect_the_truth(both)) << k << ' ' << steep << ' ' << side;
-        ASSERT_LT(relative_error(both.quick()), 0x1p-86) << k << ' ' << steep << ' ' << side;
-      }
-    }
-  }
-}
-
 // --- Properties ---
-
-TEST(QuickContour, AgreesWithTheClosedFormBelowACorner) {
-  // J. R. Howell, configuration B-3 with a = b = c = 1.
-  Both both;
-  for (const ExactVec3& corner : {ExactVec3{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}) both.add(corner);
-  both.close_loop();
-  EXPECT_EQ(enclosure_of(both.quick()).nearest(), 0.138531605994892996780769708634);
-  EXPECT_LT(both.quick().error, 0x1p-96);
-}
-
-TEST(QuickContour, ThePieceInTheOtherSenseIsTheNegative) {
-  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-    Random random(validation::seed_of(seed));
-    Both forward = cut_triangle(random, 1);
-    Both backward = forward;
-    for (Part& piece : backward.pieces) std::swap(piece.begin, piece.end);
-    EXPECT_EQ(forward.quick().hi, -backward.quick().hi) << seed;
-  }
-}
-
-TEST(QuickContour, TheLengthOfTheNormalMeansNothing) {
-  for (const int exponent : {-1060, -900, -1, 1, 900, 1020}) {
-    Both both;
-    for (const ExactVec3& corner : {ExactVec3{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}) both.add(corner);
-    both.close_loop();
-    both.normal = {0.25, -0.5, 4};  // few bits, so that any shift is exact
-    const QuickContour::Value plain = both.quick();
-    both.normal = {std::ldexp(0.25, exponent), std::ldexp(-0.5, exponent), std::ldexp(4, exponent)};
-    EXPECT_EQ(both.quick().hi, plain.hi) << exponent;
-    EXPECT_EQ(both.quick().lo, plain.lo) << exponent;
-    EXPECT_TRUE(expect_the_truth(both)) << exponent;
-  }
-}
-
-TEST(QuickContour, TheSizeOfAllCornersMeansNothing) {
-  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-    Random random(validation::seed_of(seed));
-    Both both = cut_triangle(random, 1);
-    const QuickContour::Value plain = both.quick();
-    for (const double scale : {0x1p190, 0x1p-190}) {
-      Both scaled = both;
-      for (QuickCorner& corner : scaled.corners) {
-        for (int i = 0; i < 3; ++i) {
-          corner.hi[i] *= scale;
-          corner.lo[i] *= scale;
-        }
-      }
-      EXPECT_EQ(scaled.quick().hi, plain.hi) << seed;
-      EXPECT_EQ(scaled.quick().lo, plain.lo) << seed;
-    }
-  }
-}
 
 TEST(QuickContour, ANormalWithComponentsOfAnyRatioIsEnclosed) {
   Both both;
@@ -287,6 +164,48 @@ TEST(QuickContour, ANormalWithComponentsOfAnyRatioIsEnclosed) {
   for (const Vec3& normal : {Vec3{1e-320, 0, 1e300}, Vec3{5e-324, 5e-324, 5e-324}, Vec3{1e308, -1e308, 1.5e308}}) {
     both.normal = normal;
     EXPECT_TRUE(expect_the_truth(both));
+  }
+}
+
+// --- Corners: differences of vertices, and exact directions ---
+
+TEST(QuickCorner, IsTheExactDifference) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    Random random(validation::seed_of(seed));
+    const Vec3 p = random_vector(random, std::exp2(random.between(-40, 40)));
+    const Vec3 q = random_vector(random, std::exp2(random.between(-40, 40)));
+    const int exponent = static_cast<int>(random.below(200)) - 100;
+    const QuickCorner corner = quick_corner(p, q, exponent);
+    EXPECT_EQ(corner.error, 0.0);
+    const std::array<double, 3> from = {q.x, q.y, q.z};
+    const std::array<double, 3> to = {p.x, p.y, p.z};
+    for (int i = 0; i < 3; ++i) {
+      const Rational difference = kernel::to_rational(to[i]) - kernel::to_rational(from[i]);
+      EXPECT_EQ(exactly(corner.hi[i], corner.lo[i]), kernel::times_power_of_two(difference, exponent)) << seed;
+    }
+  }
+}
+
+TEST(QuickCorner, OfAnExactDirectionKeepsItsErrorBound) {
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    Random random(validation::seed_of(seed));
+    ExactVec3 direction = random_direction(random, 1 + static_cast<int>(random.below(600)));
+    direction.y >>= static_cast<mp_bitcnt_t>(random.below(120));
+    if (is_zero(direction)) continue;
+    const QuickCorner corner = quick_corner(direction);
+    const long bits = bit_length(direction);
+    EXPECT_TRUE(bits > 106 || corner.error == 0.0) << seed;
+    EXPECT_LE(corner.error, 0x1p-105);
+    double largest = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const Rational lost =
+          kernel::times_power_of_two(Rational(direction[i]), -bits) - exactly(corner.hi[i], corner.lo[i]);
+      EXPECT_LE(abs(lost), kernel::to_rational(corner.error)) << seed;
+      EXPECT_EQ(corner.hi[i], corner.hi[i] + corner.lo[i]);
+      largest = std::max(largest, std::abs(corner.hi[i]));
+    }
+    EXPECT_GE(largest, 0.5);
+    EXPECT_LE(largest, 1.0);  // 1 - 2^-60 rounds to 1
   }
 }
 
@@ -308,15 +227,6 @@ TEST(QuickContour, DeclinesAnEdgeOnOneLineWithX) {
   EXPECT_FALSE(answers(one_piece({big, big, big}, {big, big, big + (Integer(1) << 200) + 1}).quick()));
   EXPECT_FALSE(answers(one_piece({big, big, big}, {-big, -big, -big - (Integer(1) << 200) - 1}).quick()));
   EXPECT_TRUE(answers(one_piece({1, 2, 3}, {1, 2, 4}).quick()));
-}
-
-// If one piece is declined, the whole sum is declined.
-TEST(QuickContour, StaysDeclined) {
-  Both both = one_piece({1, 2, 3}, {2, 4, 6});
-  both.add(ExactVec3{1, 5, 2});
-  both.pieces.push_back({1, 2, kA, kB});
-  EXPECT_FALSE(answers(both.quick()));
-  EXPECT_FALSE(enclosure_of(both.quick()).nearest().has_value());
 }
 
 TEST(QuickContour, DeclinesACrossingThatIsNone) {
@@ -356,14 +266,6 @@ TEST(QuickContour, DeclinesCornersTooLargeOrTooSmall) {
   EXPECT_FALSE(with({0, 0, 0}, 0));
   EXPECT_FALSE(with({0, 1, std::nan("")}, 0));
   EXPECT_FALSE(with({0, kInfinity, 0}, 0));
-}
-
-TEST(QuickContour, ALoopWithoutAreaIsNotRounded) {
-  Both both = one_piece({1, 2, 3}, {1, 2, 4});
-  both.pieces.push_back({1, 0, kA, kB});
-  EXPECT_TRUE(answers(both.quick()));
-  EXPECT_FALSE(enclosure_of(both.quick()).nearest().has_value());
-  EXPECT_TRUE(enclosure_of(both.quick()).contains(0.0));
 }
 
 }  // namespace

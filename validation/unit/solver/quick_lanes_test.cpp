@@ -22,7 +22,7 @@ namespace {
 using namespace kernel::double_double;
 using generate::Random;
 
-// --- Numbers, vectors and angles ---
+// --- Numbers and angles ---
 
 bool same(double x, double y) {
   return std::isnan(x) ? std::isnan(y) : std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
@@ -46,10 +46,6 @@ class Lanes : public ::testing::Test {
     const double error = random.one_in(3) ? 0.0 : std::abs(number(random)) * 0x1p-70;
     return {x.hi, random.one_in(9) ? number(random) : x.lo, random.one_in(9) ? kDeclined.error : error};
   }
-  static Vector bounded_vector(Random& random) {
-    const Bounded x = bounded_number(random), y = bounded_number(random), z = bounded_number(random);
-    return vector({parts(x), parts(y), parts(z)}, z.error);
-  }
 
   template <class One, class Make>
   static std::array<One, kLanes> four_of(Random& random, Make make) {
@@ -63,13 +59,6 @@ class Lanes : public ::testing::Test {
   static FourBounded pack(const std::array<Bounded, kLanes>& x) {
     return {pack(x, &Bounded::hi), pack(x, &Bounded::lo), pack(x, &Bounded::error)};
   }
-  static FourVector pack(const std::array<Vector, kLanes>& v) {
-    const auto component = [&](std::size_t i) -> BasicDoubleDouble<Four> {
-      return {Four{v[0].c[i].hi, v[1].c[i].hi, v[2].c[i].hi, v[3].c[i].hi},
-              Four{v[0].c[i].lo, v[1].c[i].lo, v[2].c[i].lo, v[3].c[i].lo}};
-    };
-    return {{component(0), component(1), component(2)}, pack(v, &Vector::norm), pack(v, &Vector::error)};
-  }
 
   static void expect_lane(const Four& four, std::size_t k, double one) {
     EXPECT_TRUE(same(four[k], one)) << "lane " << k << ": " << four[k] << " for " << one;
@@ -77,14 +66,6 @@ class Lanes : public ::testing::Test {
   static void expect_lane(const FourBounded& four, std::size_t k, const Bounded& one) {
     expect_lane(four.hi, k, one.hi);
     expect_lane(four.lo, k, one.lo);
-    expect_lane(four.error, k, one.error);
-  }
-  static void expect_lane(const FourVector& four, std::size_t k, const Vector& one) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      expect_lane(four.c[i].hi, k, one.c[i].hi);
-      expect_lane(four.c[i].lo, k, one.c[i].lo);
-    }
-    expect_lane(four.norm, k, one.norm);
     expect_lane(four.error, k, one.error);
   }
 
@@ -120,28 +101,6 @@ TEST_F(Lanes, ArithmeticIsThatOfOne) {
     expect_same_of(
         [](const auto& w, const auto& x, const auto& y, const auto& z) { return sum_of_products(w, x, y, z); }, a, b, c,
         d);
-  });
-}
-
-TEST_F(Lanes, VectorsAreThoseOfOne) {
-  for_many_seeds([](Random& random) {
-    const auto t = four_of<double>(random, number);
-    const auto l = four_of<Bounded>(random, bounded_number), m = four_of<Bounded>(random, bounded_number);
-    const auto p = four_of<Vector>(random, bounded_vector), q = four_of<Vector>(random, bounded_vector);
-    expect_same_of([](const auto& x, const auto& y) { return dot(x, y); }, p, q);
-    expect_same_of([](const auto& x, const auto& y) { return cross(x, y); }, p, q);
-    expect_same_of([](const auto& x, const auto& y) { return difference(x, y); }, p, q);
-    expect_same_of([](const auto& x, const auto& k, const auto& y) { return near_cancellation(x, k, y); }, p, t, q);
-    expect_same_of([](const auto& j, const auto& x, const auto& k, const auto& y) { return combination(j, x, k, y); },
-                   l, p, m, q);
-  });
-}
-
-TEST_F(Lanes, AnglesAreThoseOfOne) {
-  const auto angle = [](const auto& sine, const auto& cosine) { return atan2(sine, cosine, angle_constants()); };
-  for_many_seeds([&](Random& random) {
-    const auto s = four_of<Bounded>(random, bounded_number), c = four_of<Bounded>(random, bounded_number);
-    expect_same_of(angle, s, c);
   });
 }
 
@@ -219,48 +178,6 @@ TEST(QuickContourInCompany, ALineIsWhatItIsAlone) {
   }
 }
 
-// A piece from a to a, which adds nothing, at any position among any number of pieces.
-TEST(QuickContourInCompany, APieceIsWhatItIsAlone) {
-  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-    Random random(validation::seed_of(seed));
-    const Both both = cut_triangle(random, 1);
-    for (const Part& part : both.pieces) {
-      Both alone = both;
-      alone.pieces = {part};
-      const QuickContour::Value expected = alone.quick();
-      for (std::size_t count = 1; count <= 6; ++count) {
-        for (std::size_t place = 0; place < count; ++place) {
-          Both among = both;
-          among.pieces.assign(count, {1, 2, kA, kA});
-          among.pieces[place] = part;
-          EXPECT_EQ(among.quick().hi, expected.hi) << seed;
-          EXPECT_EQ(among.quick().lo, expected.lo) << seed;
-          EXPECT_LT(among.quick().error, 2 * expected.error + 0x1p-98) << seed;
-        }
-      }
-    }
-  }
-}
-
-// Pieces of two sizes, so that only one needs all steps. The sum of both must not depend on the lanes.
-TEST(QuickContourInCompany, TwoPiecesAreWhatTheyAreApart) {
-  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    Random random(validation::seed_of(seed));
-    Both both = cut_triangle(random, std::exp2(random.between(-8, 0)));
-    const Both other = cut_triangle(random, std::exp2(random.between(-2, 1)));
-    const auto first = static_cast<std::uint32_t>(both.corners.size());
-    both.corners.insert(both.corners.end(), other.corners.begin(), other.corners.end());
-    Part second = other.pieces[random.below(3)];
-    for (std::uint32_t* corner :
-         {&second.a, &second.b, &second.begin.c, &second.begin.d, &second.end.c, &second.end.d}) {
-      *corner += first;
-    }
-    both.pieces = {both.pieces[random.below(3)], second};
-    EXPECT_EQ(both.quick().hi, both.quick(1).hi) << seed;
-    EXPECT_EQ(both.quick().lo, both.quick(1).lo) << seed;
-  }
-}
-
 // A declined piece invalidates its own sum in any position; lanes that repeat a piece invalidate none.
 TEST(QuickContourInCompany, EveryNumberOfPiecesIsSummedWhole) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
@@ -279,11 +196,6 @@ TEST(QuickContourInCompany, EveryNumberOfPiecesIsSummedWhole) {
       EXPECT_FALSE(answers(spoilt.quick())) << seed << ' ' << count;
     }
   }
-}
-
-TEST(QuickContourInCompany, NothingAddedIsNothing) {
-  EXPECT_TRUE(same(Both().quick().hi, -0.0) || same(Both().quick().hi, 0.0));
-  EXPECT_LT(Both().quick().error, 0x1p-900);
 }
 
 }  // namespace

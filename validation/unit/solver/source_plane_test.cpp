@@ -60,13 +60,5 @@ TEST(SourcePlane, AHoleGivesNothing) {
   expect_equal(sum, form_factor(rectangle(-1, 1, -1, 1, 1)));
 }
 
-TEST(SourcePlane, BothEndsOfASourceCutInTwoCount) {
-  PlainScene plain = source_of({rectangle(-1, 1, -1, 1, 1)});
-  plain.add_ring(plain.patch("beam"), rectangle(-0.25, 0.125, -2, 2, 0.5));
-  Enclosure sum = form_factor(rectangle(-1, -0.5, -1, 1, 1));
-  sum += form_factor(rectangle(0.25, 1, -1, 1, 1));
-  expect_equal(solve(plain).enclosure, sum);
-}
-
 }  // namespace
 }  // namespace exactff

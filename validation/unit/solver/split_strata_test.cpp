@@ -66,20 +66,6 @@ TEST_P(SplitStrataOf, ShareTheAreaAndHoldTheFunction) {
   EXPECT_NEAR(sum, area, 1e-12 * area);
 }
 
-// The worst one has some four times the mean weight: strata of the same size would have a worse one.
-TEST_P(SplitStrataOf, AreSmallWhereTheFunctionMayBeLarge) {
-  SplitStrata split(parts_, 36, span_);
-  while (split.strata().strata.size() < 1000) ASSERT_TRUE(split.split_largest_term());
-  double sum = 0.0, worst = 0.0;
-  for (std::size_t s = 0; s < split.strata().strata.size(); ++s) {
-    const double weight = 0.5 * split.span(s).range * split.strata().strata[s].area / split.strata().area;
-    sum += weight;
-    worst = std::max(worst, weight);
-  }
-  EXPECT_DOUBLE_EQ(split.largest_term(), worst);
-  EXPECT_LE(worst, 4.0 * sum / static_cast<double>(split.strata().strata.size()));
-}
-
 // The mean over many analyses at split strata is that over very many equal ones.
 TEST_P(SplitStrataOf, LeaveTheMeanAsItIs) {
   const auto mean = [&](const Strata& strata, std::size_t analysis) {
@@ -124,56 +110,11 @@ TEST_P(SplitStrataOf, LeaveLessToChanceWhereTheFunctionHardlyChanges) {
   EXPECT_DOUBLE_EQ(split.largest_term(), largest);
 }
 
-// Those of the largest squares first. What is left of them is counted, and an analysis sets them anew.
-TEST_P(SplitStrataOf, AreSmallWhereNumbersWereFarFromTheirControlVariates) {
-  SplitStrata split(parts_, 36, [](const Tile&, bool) { return Span{}; });
-  EXPECT_FALSE(split.split_largest_square());
-  const std::size_t first = split.strata().strata.size();
-  for (std::size_t s = 0; s < first; ++s) split.set_square(s, s == 7 ? 1.0 : 0.01);
-  const double sum = 1.0 + 0.01 * static_cast<double>(first - 1);
-  EXPECT_NEAR(split.sum_of_squares(), sum, 1e-12);
-  EXPECT_EQ(split.largest_square(), 1.0);
-  ASSERT_TRUE(split.split_largest_square());
-  EXPECT_LT(split.sum_of_squares(), sum - 0.5);
-  EXPECT_LT(split.largest_square(), 0.5);
-  EXPECT_GT(split.largest_square(), 0.01);
-  while (split.largest_square() > 0.01) ASSERT_TRUE(split.split_largest_square());
-  EXPECT_LT(split.strata().strata.size(), 2 * first);
-  const std::size_t last = split.strata().strata.size();
-  for (std::size_t s = 0; s < last; ++s) split.set_square(s, 2.0);
-  EXPECT_NEAR(split.sum_of_squares(), 2.0 * static_cast<double>(last), 1e-9);
-  for (int i = 0; i < 50; ++i) ASSERT_TRUE(split.split_largest_term());
-  double area = 0.0;
-  for (const Stratum& stratum : split.strata().strata) area += stratum.area;
-  EXPECT_NEAR(area, split.strata().area, 1e-12 * area);
-}
-
 INSTANTIATE_TEST_SUITE_P(Shapes, SplitStrataOf,
                          testing::Values(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
                                          std::vector<Vec3>{{0, 0, 0}, {8, 0, 0}, {8, 1, 0}, {0, 1, 0}},
                                          std::vector<Vec3>{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}},
                                          std::vector<Vec3>{{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {1, 3, 0}, {0, 2, 0}}));
-
-// Those of many small faces share strata until they are split.
-TEST(SplitStrata, OfManyFacesAreSharedOutAmongThem) {
-  PlainScene plain;
-  for (int i = 0; i < 400; ++i) {
-    const double x = i % 20, y = i / 20;
-    plain.add_ring(plain.patch("patch"), {{x, y, 0}, {x + 0.5, y, 0}, {x + 0.5, y + 0.5, 0}, {x, y + 0.5, 0}});
-  }
-  const Scene scene = generate::build(plain);
-  const ExactScene exact(scene);
-  const std::vector<Part> parts = parts_of(exact, scene.select("patch"));
-  SplitStrata split(parts, 40, [](const Tile&, bool) { return Span{}; });
-  EXPECT_LT(split.strata().strata.size(), 100U);
-  while (split.strata().strata.size() < 400) ASSERT_TRUE(split.split_largest_term());
-  std::vector<int> of_part(parts.size());
-  for (const Stratum& stratum : split.strata().strata) {
-    EXPECT_EQ(stratum.end, stratum.begin + 1);
-    ++of_part[split.strata().tiles[stratum.begin].part];
-  }
-  EXPECT_EQ(std::ranges::count(of_part, 1), 400);
-}
 
 }  // namespace
 }  // namespace exactff::view_factors

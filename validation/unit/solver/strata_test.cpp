@@ -123,19 +123,6 @@ TEST_P(StrataOf, AreAtLeastAsManyAsAskedForAndShareTheArea) {
   }
 }
 
-TEST_P(StrataOf, PointsLieInTheirPart) {
-  const Strata strata = strata_of(parts_, 36);
-  for (std::size_t s = 0; s < strata.strata.size(); ++s) {
-    for (std::size_t d = 0; d < 2; ++d) {
-      const auto [part, point] = sample(parts_, strata, 1, s, d, exact_.units);
-      const std::vector<Vec3> ring = positions_of(parts_[part].corners);
-      double sum = 0.0;
-      for (std::size_t i = 0; i < ring.size(); ++i) sum += area({ring[i], ring[(i + 1) % ring.size()], point.at});
-      EXPECT_NEAR(sum, area(ring), 1e-9 * area(ring));
-    }
-  }
-}
-
 // The mean over many analyses, within five standard errors; and what the analyses say of their variance.
 TEST_P(StrataOf, MeansOfSquaresAreUnbiased) {
   const auto f = [](const Vec3& p) { return p.x * p.x + p.x * p.y + 2.0 * p.z * p.z; };
@@ -186,28 +173,6 @@ INSTANTIATE_TEST_SUITE_P(Patches, StrataOf, testing::ValuesIn(patches()), [](con
   return name;
 });
 
-// Wherever the ring begins: about as many tiles as asked for, of about equal sides.
-TEST(Strata, OfAParallelogramAreASingleGrid) {
-  struct Grid {
-    double length;
-    std::uint32_t along, across;
-  };
-  for (const auto& [length, along, across] : {Grid{4, 12, 3}, Grid{9, 18, 2}, Grid{30, 36, 1}}) {
-    const std::array<Vec3, 4> ring{Vec3{0, 0, 0}, {length, 0, 0}, {length, 1, 0}, {0, 1, 0}};
-    for (std::size_t first = 0; first < 4; ++first) {
-      PlainScene plain;
-      plain.add_ring(plain.patch("strip"),
-                     {ring[first], ring[(first + 1) % 4], ring[(first + 2) % 4], ring[(first + 3) % 4]});
-      const Scene scene = generate::build(plain);
-      const ExactScene exact(scene);
-      const Strata strata = strata_of(parts_of(exact, scene.select("strip")), 36);
-      ASSERT_EQ(strata.tiles.size(), 36U);
-      EXPECT_EQ(strata.tiles[0].columns, first % 2 == 0 ? along : across);
-      EXPECT_EQ(strata.tiles[0].rows, first % 2 == 0 ? across : along);
-    }
-  }
-}
-
 // Strips of different widths with gaps between them, more than are worth a stratum each. The function is 1 on every
 // second one.
 TEST(Strata, OfManyFacesShareTheirFacesWithoutBias) {
@@ -247,40 +212,6 @@ TEST(Strata, OfManyFacesShareTheirFacesWithoutBias) {
   EXPECT_GT(variance, 0.9 * spread);
 }
 
-// The mean of a function that is 1 on a strip of the unit square and 0 elsewhere. However the strip lies, the interval
-// holds its width, though all draws of most strata agree.
-TEST(Strata, IntervalsHoldTheMeansOfStrips) {
-  PlainScene plain;
-  plain.add_ring(plain.patch("square"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
-  const Scene scene = generate::build(plain);
-  const ExactScene exact(scene);
-  const std::vector<Part> parts = parts_of(exact, scene.select("square"));
-  constexpr std::size_t kAnalyses = 100;
-  for (const std::size_t count : {36, 100}) {
-    const Strata strata = strata_of(parts, count);
-    const double r = 0.5 * std::ranges::max(strata.strata, {}, &Stratum::area).area / strata.area;
-    for (const double width : {1e-4, 1e-3, 0.01, 0.03, 0.1, 0.5}) {
-      double largest = 0.0;
-      for (std::size_t analysis = 0; analysis < kAnalyses; ++analysis) {
-        const double from = 0.9 * (1.0 - width) * static_cast<double>(analysis) / kAnalyses;
-        StratifiedMean mean{.expected = 4.0 * r * r};
-        for (std::size_t s = 0; s < strata.strata.size(); ++s) {
-          const auto value = [&](std::size_t draw) {
-            const Point p = sample(parts, strata, analysis, s, draw, exact.units).point;
-            const double x = std::ldexp(p.at.x, static_cast<int>(exact.units.exponent + exact.units.shift));
-            return x >= from && x < from + width ? 1.0 : 0.0;
-          };
-          add_numbers(mean, value(0), value(1), 0.0, strata.strata[s].area / strata.area);
-        }
-        const double error = mean.error(r, 1e-6), off = std::abs(mean.value - width);
-        EXPECT_LE(off, error) << count << ' ' << width << ' ' << analysis;
-        largest = std::max(largest, off / error);
-      }
-      EXPECT_LT(largest, 1.0);
-    }
-  }
-}
-
 // Of a unit square with other faces on it.
 class Contacts : public testing::Test {
  protected:
@@ -300,18 +231,6 @@ class Contacts : public testing::Test {
 
   PlainScene plain_;
 };
-
-TEST_F(Contacts, AWallCutsTheFloorThatItStandsOn) {
-  add({{0.25, 0, 0}, {0.25, 1, 0}, {0.25, 1, 1}, {0.25, 0, 1}});
-  const std::vector<Part> parts = cut();
-  ASSERT_EQ(parts.size(), 2U);
-  for (const Part& part : parts) {
-    EXPECT_EQ(part.corners.size(), 4U);
-    EXPECT_TRUE(part.is_cut);
-  }
-  EXPECT_NEAR(std::min(share(parts[0], parts), share(parts[1], parts)), 0.25, 1e-15);
-  EXPECT_GE(strata_of(parts, 36).strata.size(), 36U);
-}
 
 // However small: without its own stratum, few or no points would meet it.
 TEST_F(Contacts, ACornerThatAFacePiercesIsAStratum) {
@@ -335,58 +254,6 @@ TEST_F(Contacts, WhatHasNoLineOnItsFrontDoesNotCutIt) {
   ASSERT_EQ(parts.size(), 1U);
   EXPECT_TRUE(parts[0].is_piece);
   EXPECT_FALSE(parts[0].is_cut);
-}
-
-// It does not cut the fragments on the other side of another line.
-TEST_F(Contacts, AShortWallCutsTheFragmentsThatItReaches) {
-  add({{0.5, 0, 0}, {0.5, 1, 0}, {0.5, 1, 1}, {0.5, 0, 1}});
-  add({{0, 0.5, 0}, {0.5, 0.5, 0}, {0.5, 0.5, 1}, {0, 0.5, 1}});
-  EXPECT_EQ(cut().size(), 3U);
-}
-
-TEST_F(Contacts, OnlyTheLongestEightCut) {
-  for (int i = 1; i <= 12; ++i) {
-    const double x = i / 16.0, y = i / 32.0;
-    add({{x, 0, 0}, {x, y, 0}, {x, y, 1}, {x, 0, 1}});
-  }
-  const std::vector<Part> parts = cut();
-  ASSERT_EQ(parts.size(), 9U);
-  std::vector<double> shares;
-  for (const Part& part : parts) shares.push_back(share(part, parts));
-  std::ranges::sort(shares);
-  EXPECT_EQ(shares[0], 1.0 / 16.0);
-  EXPECT_EQ(shares[7], 4.0 / 16.0) << "right of the longest";
-  EXPECT_EQ(shares[8], 5.0 / 16.0) << "left of the shortest that cuts";
-}
-
-// The walls of a room, and both sides of a wall, are no reason to leave out what cuts the floor.
-TEST_F(Contacts, LinesThatCutNothingDoNotCount) {
-  for (const double x : {0.0, 1.0}) {
-    add({{x, 0, 0}, {x, 1, 0}, {x, 1, 1}, {x, 0, 1}});
-    add({{0, x, 0}, {1, x, 0}, {1, x, 1}, {0, x, 1}});
-  }
-  for (int i = 1; i <= 5; ++i) {
-    const double x = i / 8.0;
-    add({{x, 0, 0}, {x, 0.5, 0}, {x, 0.5, 1}, {x, 0, 1}});
-    add({{x, 0, 0}, {x, 0, 1}, {x, 0.5, 1}, {x, 0.5, 0}});
-  }
-  EXPECT_EQ(cut().size(), 6U);
-}
-
-// Fragments share strata only if there are very many.
-TEST_F(Contacts, FragmentsAreStrataOfTheirOwnUnlessThereAreTooMany) {
-  add({{0.001, 0, 0}, {0.001, 1, 0}, {0.001, 1, 1}, {0.001, 0, 1}});
-  add({{0.002, 0, 0}, {0.002, 1, 0}, {0.002, 1, 1}, {0.002, 0, 1}});
-  const std::vector<Part> parts = cut();
-  ASSERT_EQ(parts.size(), 3U);
-  const auto tiles_of = [](const Stratum& stratum) { return stratum.end - stratum.begin; };
-  const Strata few = strata_of(parts, 36);
-  EXPECT_TRUE(std::ranges::all_of(few.strata, [&](const Stratum& s) { return tiles_of(s) == 1; }));
-  std::vector<Part> many;
-  for (int i = 0; i < 100; ++i) many.insert(many.end(), parts.begin(), parts.end());
-  const Strata shared = strata_of(many, 36);
-  EXPECT_LE(shared.strata.size(), 4 * 36U);
-  EXPECT_GE(shared.strata.size(), 36U);
 }
 
 }  // namespace

@@ -3,14 +3,11 @@
 
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
 #include <map>
-#include <random>
 #include <set>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "exactff/models.h"
 #include "exactff/scene_files.h"
@@ -99,61 +96,6 @@ TEST(ViewPicture, NeighboursHaveColoursThatDiffer) {
     SCOPED_TRACE(model);
     const Scene room = models::make_scene(model);
     expect_neighbours_to_differ(room, on_floor(room, {2.1, 0, 1.7}));
-  }
-}
-
-TEST(ViewPicture, PatchesKeepColoursThatDifferFromThoseOfTheirNeighbours) {
-  const Scene box = read_obj(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
-  auto colours = colours_in(view_svg(box, on_floor(box, {240, 0, 300})));
-  const auto left = lab(*colours["front left"].begin()), right = lab(*colours["front right"].begin());
-  EXPECT_GT(left[1], 40.0);    // red
-  EXPECT_LT(right[1], -30.0);  // green
-}
-
-// A wheel of white patches around another one, and the sky.
-TEST(ViewPicture, PatchesOfOneMaterialDiffer) {
-  generate::PlainScene plain;
-  constexpr int kSpokes = 7;
-  const auto rim = [](int k, double radius) {
-    const double angle = 2 * M_PI * k / kSpokes;
-    return Vec3{radius * std::cos(angle), radius * std::sin(angle), 1};
-  };
-  std::vector<Vec3> hub;
-  for (int k = kSpokes; k > 0; --k) hub.push_back(rim(k % kSpokes, 1));
-  plain.add_ring(plain.patch("hub"), hub);
-  for (int k = 0; k < kSpokes; ++k) {
-    const int next = (k + 1) % kSpokes;
-    plain.add_ring(plain.patch("spoke" + std::to_string(k)), {rim(k, 1), rim(next, 1), rim(next, 3), rim(k, 3)});
-  }
-  const Scene wheel = generate::build(plain);
-  expect_neighbours_to_differ(wheel, {.point = {0, 0, 0}, .normal = {0, 0, 1}, .on = {}, .id = {}});
-}
-
-TEST(ViewPicture, SaysWhatItsMarkIs) {
-  const Scene box = read_obj(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
-  const std::string svg = view_svg(box, on_floor(box, {240, 0, 300}));
-  EXPECT_NE(svg.find(">+ is the direction of the receiver's normal"), std::string::npos) << svg.substr(0, 2000);
-}
-
-// A triangulated grid, whose colours are all alike at first: each vertex touches six others.
-TEST(DistinctColours, OfAPlanarGraphDiffer) {
-  constexpr std::uint32_t kSide = 20;
-  std::mt19937 random(1);
-  std::vector<whole_view::Tinted> things;
-  for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
-    const double grey = 0.7 + 0.2 * static_cast<double>(random() % 5) / 4;
-    whole_view::Tinted& thing = things.emplace_back();
-    thing.own = {grey, grey, grey};
-    if (i % kSide != 0) thing.touching.push_back(i - 1);
-    if (i >= kSide) thing.touching.push_back(i - kSide);
-    if (i % kSide != 0 && i >= kSide) thing.touching.push_back(i - kSide - 1);
-  }
-  const std::vector<Rgb> colours = whole_view::distinct_colours(things);
-  EXPECT_EQ(colours.front(), things.front().own);
-  for (std::size_t i = 0; i < things.size(); ++i) {
-    for (const std::uint32_t j : things[i].touching) {
-      EXPECT_GT(whole_view::difference_of_colours(colours[i], colours[j]), 0.06) << i << ' ' << j;
-    }
   }
 }
 

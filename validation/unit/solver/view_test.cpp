@@ -66,15 +66,6 @@ bool is_seen(const WholeView& seen, const Scene& scene, const std::string& name)
   return validation::find_patch(seen, index_of(scene.select(name).patch)) != nullptr;
 }
 
-TEST(View, OfNothingIsOpen) {
-  const Scene scene = generate::build(plain_of({{"below", square(-1, -1, 1, 1, -1)}}));
-  const WholeView seen = judged(scene, looking_up());
-  EXPECT_TRUE(seen.patches.empty());
-  EXPECT_EQ(seen.open.value, 1.0);
-  EXPECT_EQ(seen.open.status, Status::kCertified);
-  EXPECT_EQ(seen.back.status, Status::kZero);
-}
-
 TEST(View, FromInsideASolidIsItsBacks) {
   PlainScene plain;
   const Ring lid = reversed(square(-1, -1, 1, 1, 1));
@@ -92,19 +83,6 @@ TEST(View, FromInsideASolidIsItsBacks) {
   EXPECT_EQ(seen.open.status, Status::kZero);
 }
 
-// Each plane is in front of the other one on one side.
-TEST(View, OfPiercingFacesHasTheirCommonLineAsAnEdge) {
-  const Scene scene = generate::build(plain_of({{"rising", {{-1, -1, 1}, {-1, 1, 1}, {1, 1, 3}, {1, -1, 3}}},
-                                                {"falling", {{-1, -1, 3}, {-1, 1, 3}, {1, 1, 1}, {1, -1, 1}}}}));
-  const WholeView seen = judged(scene, looking_up());
-  const SeenPatch &left = patch_of(seen, scene, "rising"), &right = patch_of(seen, scene, "falling");
-  EXPECT_GT(left.share.value, 0.1);
-  EXPECT_EQ(left.share.value, right.share.value);
-  const WholeView arcs = view(scene, looking_up(), {.arcs = true});
-  EXPECT_EQ(std::ranges::count_if(arcs.arcs, [](const ViewArc& arc) { return arc.right && arc.left != arc.right; }), 1);
-  EXPECT_EQ(arcs.record.pierced, 1U);
-}
-
 TEST(View, OfThreePlanesThroughOneLineHasItOnce) {
   const Scene scene = generate::build(plain_of({{"rising", {{-1, -1, 1}, {-1, 1, 1}, {1, 1, 3}, {1, -1, 3}}},
                                                 {"falling", {{-1, -1, 3}, {-1, 1, 3}, {1, 1, 1}, {1, -1, 1}}},
@@ -112,35 +90,6 @@ TEST(View, OfThreePlanesThroughOneLineHasItOnce) {
                                                 {"half", square(0, -1, 1, 1, 2)}}));
   judge(scene, looking_up());
   judge(scene, looking_up({0.25, 0.125, 0}));
-}
-
-TEST(View, OfFacesThatHideEachOtherInACircleIsExact) {
-  const auto bar = [](double angle) {
-    const double c = std::cos(angle), s = std::sin(angle);
-    const auto at = [&](double u, double v, double z) { return Vec3{c * u - s * v, s * u + c * v, z}; };
-    return Ring{at(-3, 0.5, 1.25), at(3, 0.5, 2.75), at(3, 1, 2.75)};
-  };
-  const Scene scene = generate::build(plain_of({{"a", bar(0)}, {"b", bar(2.1)}, {"c", bar(4.2)}}));
-  judge(scene, looking_up());
-  judge(scene, {.point = {0, 0, 4}, .normal = {0, 0, -1}, .on = {}, .id = {}});
-}
-
-TEST(View, OfAStackOfCoplanarFacesIsTheLowestAndEachFormFactorIsWhole) {
-  const Scene scene = generate::build(plain_of({{"low", square(-1, -1, 1, 1, 1)},
-                                                {"high", square(-1, -1, 1, 1, 1)},
-                                                {"shifted", square(0, -1, 2, 1, 1)},
-                                                {"turned", reversed(square(-1, -1, 3, 1, 1))}}));
-  const WholeView seen = judged(scene, looking_up());
-  const SeenPatch &low = patch_of(seen, scene, "low"), &high = patch_of(seen, scene, "high");
-  EXPECT_EQ(high.share.status, Status::kZero);
-  validation::expect_same_bits(high.form_factor, low.share, "high");
-  validation::expect_same_bits(low.form_factor, low.share, "low");
-  EXPECT_TRUE(high.stacked);
-  EXPECT_FALSE(low.stacked) << "it has all that it could have";
-  const SeenPatch& shifted = patch_of(seen, scene, "shifted");
-  EXPECT_LT(shifted.share.value, shifted.form_factor.value);
-  EXPECT_GT(shifted.share.value, 0.0);
-  EXPECT_GT(seen.back.value, 0.0);  // the part of `turned` that nothing lower covers
 }
 
 // A thin lamp of two faces with opposite fronts, of one patch or of two.
@@ -164,19 +113,6 @@ TEST(View, OfADoubledFaceIsItsFrontWhateverComesFirst) {
   }
 }
 
-// Of the sheet that shows its back, the front in its plane covers a part.
-TEST(View, OfABackIsWhatNoFrontInItsPlaneCovers) {
-  const Named back{"back", reversed(square(-1, -1, 1, 1, 1))}, front{"front", square(0, -1, 2, 1, 1)};
-  const Scene halves = generate::build(plain_of({{"left", reversed(square(-1, -1, 0, 1, 1))}}));
-  const ViewShare left = view(halves, looking_up()).back;
-  for (const auto& faces : {std::vector<Named>{back, front}, {front, back}}) {
-    const Scene scene = generate::build(plain_of(faces));
-    const WholeView seen = judged(scene, looking_up());
-    validation::expect_same_bits(seen.back, left, "back");
-    validation::expect_same_bits(patch_of(seen, scene, "front").share, patch_of(seen, scene, "front").form_factor, "");
-  }
-}
-
 // Both have an edge in the plane x = 0, at different depths.
 TEST(View, OfAlignedEdgesAtDifferentDepthsHasOneArc) {
   for (const bool near_first : {true, false}) {
@@ -187,33 +123,6 @@ TEST(View, OfAlignedEdgesAtDifferentDepthsHasOneArc) {
     const WholeView seen = view(scene, looking_up(), {.arcs = true});
     EXPECT_EQ(std::ranges::count_if(seen.arcs, [](const ViewArc& arc) { return arc.right.has_value(); }), 1);
   }
-}
-
-// A mesh has shared edges, which are looked at once. Another mesh with edges that partly lie on them must not be
-// overlooked, at the same depth, nearer or further.
-TEST(View, OfMeshesWhoseEdgesLieOnEachOtherIsExact) {
-  for (const double z : {0.5, 1.0, 2.0}) {
-    PlainScene plain = plain_of({{"left", square(-1, -1, 0, 1, 1)}, {"right", square(0, -1, 1, 1, 1)}});
-    generate::PlainPatch& other = plain.patch("other");
-    plain.add_ring(other, square(-0.5 * z, 0, 0, 0.5 * z, z));
-    plain.add_ring(other, square(0, 0, 0.5 * z, 0.5 * z, z));
-    plain.add_ring(plain.patch("more"), square(-0.5 * z, -0.5 * z, 0, 0, z));
-    const Scene scene = generate::build(plain);
-    judge(scene, looking_up());
-    judge(scene, looking_up({0.125, 0.25, 0.0625}));
-  }
-}
-
-// A face that holds a shared edge of a mesh is nearer on one side of it only.
-TEST(View, OfAFaceThroughASharedEdgeIsExact) {
-  PlainScene plain;
-  generate::PlainPatch& mesh = plain.patch("mesh");
-  plain.add_ring(mesh, square(-1, -1, 0, 1, 1));
-  plain.add_ring(mesh, square(0, -1, 1, 1, 1));
-  plain.add_ring(plain.patch("blade"), {{-1, -2, 0.5}, {-1, 2, 0.5}, {1, 2, 1.5}, {1, -2, 1.5}});
-  const Scene scene = generate::build(plain);
-  judge(scene, looking_up());
-  EXPECT_GT(patch_of(view(scene, looking_up()), scene, "mesh").share.value, 0.0);
 }
 
 Scene room() {
@@ -280,37 +189,6 @@ TEST(View, OfDistancesFarApartIsExact) {
                                   {"huge", square(-0x1p800, -0x1p800, 0x1p800, 0x1p800, 0x1p800)},
                                   {"wall", {{0.5, -1, -1}, {0.5, -1, 3}, {0.5, 2, 3}, {0.5, 2, -1}}}})),
         looking_up());
-}
-
-TEST(View, HasTheSameBitsInAUsedWorkspace) {
-  const Scene first = room(), second = read_obj(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
-  Workspace workspace;
-  WholeView result;
-  const Receiver on_floor{.point = {200, 0, 400}, .normal = {0, 1, 0}, .on = {FaceId{0}}, .id = {}};
-  for (int i = 0; i < 2; ++i) {
-    view(first, looking_up({1, 1.5, 0.5}), {}, result, workspace);
-    view(second, on_floor, {}, result, workspace);
-  }
-  const WholeView fresh = view(second, on_floor);
-  ASSERT_EQ(result.patches.size(), fresh.patches.size());
-  for (std::size_t i = 0; i < fresh.patches.size(); ++i) {
-    EXPECT_EQ(result.patches[i].share.enclosure.midpoint(), fresh.patches[i].share.enclosure.midpoint());
-  }
-  judge(second, on_floor);
-}
-
-TEST(View, HasBallsForAnyPrecision) {
-  const Scene scene = room();
-  const WholeView seen = view(scene, looking_up({1, 2, 0.5}));
-  for (const int cap : {1, 8, 64, 300}) {
-    const WholeView coarse = view(scene, looking_up({1, 2, 0.5}), {.precision_cap = cap});
-    ASSERT_EQ(coarse.patches.size(), seen.patches.size());
-    for (std::size_t i = 0; i < seen.patches.size(); ++i) {
-      EXPECT_TRUE(coarse.patches[i].share.enclosure.overlaps(seen.patches[i].share.enclosure));
-    }
-  }
-  const WholeView fine = view(scene, looking_up({1, 2, 0.5}), {.digits = 60});
-  for (const SeenPatch& patch : fine.patches) EXPECT_TRUE(patch.share.enclosure.decimals(60));
 }
 
 TEST(View, RefusesWhatHasNoView) {
