@@ -11,7 +11,6 @@
 
 #include "cli/command.h"
 #include "cli/exit_code.h"
-#include "cli/help.h"
 #include "cli/launch.h"
 #include "cli/long_run.h"
 #include "cli/memory.h"

@@ -4,7 +4,10 @@
 #include <array>
 #include <string_view>
 
-#include "cli/known_words.h"
+#include "exactff/methods.h"
+#include "exactff/models.h"
+#include "report/plan.h"
+#include "stress/stress.h"
 #include "text/nearest_names.h"
 
 namespace exactff::cli {
@@ -73,6 +76,23 @@ std::string description_of(const CLI::Option& option, const TypeText& type) {
 }
 
 std::string ellipsis(const OptionRow& row) { return row.most_values == kManyValues ? "..." : ""; }
+
+// What completion offers for a placeholder of an option or the name of a positional argument: EXPERIMENT, FAMILY,
+// METHOD, or SCENE (the generated ones, with their @).
+std::vector<std::string> known_words(const std::string& kind) {
+  std::vector<std::string> words;
+  if (kind == "METHOD") {
+    for (const methods::Method* method : methods::all_methods()) words.push_back(method->name);
+  } else if (kind == "SCENE") {
+    for (const models::Model* model : models::all_models()) words.push_back('@' + std::string(model->name));
+  } else if (kind == "FAMILY") {
+    for (const stress::FamilyInfo& family : stress::families()) words.emplace_back(family.name);
+  } else if (kind == "EXPERIMENT") {
+    words = report::experiment_names();
+    words.emplace_back("all");
+  }
+  return words;
+}
 
 void offer(std::vector<std::string> words, OptionRow& row) {
   if (words.empty()) return;

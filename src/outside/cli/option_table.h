@@ -1,5 +1,5 @@
-// CLI11's description of the program as plain tables. The help, the manual page and the completions are all generated
-// from these tables, so that they always agree with the options that are parsed.
+// CLI11's description of the program as plain tables. The help and the completion are generated from these
+// tables, so that they always agree with the options that are parsed.
 #pragma once
 
 #include <CLI/CLI.hpp>
