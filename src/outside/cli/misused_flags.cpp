@@ -67,27 +67,7 @@ std::optional<std::string> nearest_flag(const CommandTable& command, const std::
   return std::string(nearest);
 }
 
-// Flags that a command once had, and what serves instead.
-struct RemovedFlag {
-  std::string_view command, name, why, instead;
-};
-constexpr std::array kRemovedFlags = {
-    RemovedFlag{"matrix", "--draft", "entries in crowds are means of points now, as accurate as asked within --budget",
-                "leave it out; a smaller --budget or a larger --accuracy makes it faster"},
-    RemovedFlag{"matrix", "--views", "entries in crowds are means of points now, as many as each needs",
-                "leave it out; --budget limits the points of an entry"}};
-
-std::optional<Problem> removed(const CommandTable& command, const GivenFlag& flag) {
-  const auto is_it = [&](const RemovedFlag& one) { return one.command == command.name && one.name == flag.name; };
-  const auto found = std::ranges::find_if(kRemovedFlags, is_it);
-  if (found == kRemovedFlags.end()) return std::nullopt;
-  return Problem{.what = "exactff " + command.name + " no longer has " + flag.name,
-                 .why = std::string(found->why),
-                 .suggestion = std::string(found->instead)};
-}
-
 Problem unknown(const CommandTable& command, const GivenFlag& flag) {
-  if (auto problem = removed(command, flag)) return *std::move(problem);
   const std::optional<std::string> nearest = nearest_flag(command, flag.name);
   return {
       .what = "exactff " + command.name + " has no flag " + flag.name,

@@ -1,4 +1,4 @@
-// Words for command lines that CLI11 refuses or would misread: a flag that is not there, or no longer, or one without
+// Words for command lines that CLI11 refuses or would misread: a flag that is not there, or one without
 // its value, or with the wrong number of numbers.
 #pragma once
 
