@@ -1,5 +1,5 @@
-// All commands of the program, and those that explain it: `exactff help`, and `exactff completion`, which is not listed,
-// since only the installation calls it.
+// All commands of the program, and those that explain it: `exactff help`, and `exactff completion`, which is not
+// listed, since only the installation calls it.
 #include <filesystem>
 #include <iostream>
 #include <memory>

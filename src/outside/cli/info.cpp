@@ -7,9 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
-#include "cli/long_run.h"
 #include "cli/output.h"
-#include "cli/text_table.h"
+#include "cli/process.h"
 #include "exactff/models.h"
 #include "exactff/scene.h"
 #include "exactff/slips.h"

@@ -9,7 +9,7 @@
 
 #include "cli/command.h"
 #include "cli/further_files.h"
-#include "cli/long_run.h"
+#include "cli/process.h"
 #include "cli/truth_summary.h"
 #include "exactff/matrix.h"
 #include "exactff/truth.h"

@@ -6,9 +6,8 @@
 #include <iostream>
 #include <memory>
 #include <system_error>
-#include <vector>
 
-#include "cli/long_run.h"
+#include "cli/process.h"
 #include "files/file.h"
 #include "page/output_folder.h"
 #include "text/phrases.h"

@@ -1,3 +1,4 @@
+// What exactff point prints and draws.
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -13,37 +14,12 @@ namespace exactff::cli {
 
 using text::shortest;
 
-std::string plain_value(const FormFactor& result) {
-  if (result.status == Status::kZero) return "0";
-  if (result.status == Status::kUnderflow) return "0.0";
-  return shortest(result.value);
-}
-
 namespace {
 
 std::string plain_derivative(const Derivative& d) {
   if (d.status == DerivativeStatus::kZero) return "0";
   return d.value == 0.0 ? "0.0" : shortest(d.value);
 }
-
-}  // namespace
-
-std::string plain_gradient(const FormFactor& result) {
-  std::string line = plain_value(result);
-  if (result.gradient->kink) return line + "\tkink";
-  for (const Derivative& d : result.gradient->position) line += '\t' + plain_derivative(d);
-  return line;
-}
-
-std::string value_text(const FormFactor& result, int digits) {
-  if (result.status == Status::kZero) return "0";
-  if (digits > 0) {
-    if (const std::optional<std::string> decimals = result.enclosure.decimals(digits)) return *decimals;
-  }
-  return plain_value(result);
-}
-
-namespace {
 
 constexpr std::size_t kMostSharesShown = 20;
 
@@ -205,42 +181,70 @@ std::string radiosity_words(const PointResult& point) {
          (others == 1 ? " that emits" : " that emit") + " nothing, with a radiosity of 1)";
 }
 
-}  // namespace
+// --- the table of --source all: what the receiver sees of every patch, and what is missing to 1 ---
 
-std::optional<std::string> sum_text(const Enclosure& sum, int digits) {
-  if (digits > 0) {
-    if (auto decimals = sum.decimals(digits)) return decimals;
-  }
-  const std::optional<double> nearest = sum.nearest();
-  return nearest ? std::optional(shortest(*nearest)) : std::nullopt;
+// 1 - sum.
+Enclosure missing_to_one(const Enclosure& sum) {
+  Enclosure missing = Enclosure::of(1.0);
+  missing -= sum;
+  return missing;
 }
 
-void print_point_table(const PointArguments& args, const Scene& scene, const PointResult& point) {
-  std::cout << "receiver " << vec_text(point.receiver.point) << ", normal " << vec_text(point.receiver.normal);
-  if (!point.receiver.on.empty()) std::cout << ", on " << text::printable(scene.name_of(point.receiver.on));
-  if (const std::optional<FaceId> cover = buried_under(scene, point.receiver)) {
-    std::cout << "\nburied under " << shown_name(scene, *cover)
-              << ": a closed solid stands on the receiver's face there, so it sees nothing";
+std::string between(const Enclosure& sum) {
+  return "between " + shortest(sum.lower()) + " and " + shortest(sum.upper());
+}
+
+// What 1 less the sum is.
+std::string missing_meaning(const Scene& scene, const PointResult& point) {
+  if (point.stacked) {
+    return "patches lie in one plane over each other, and each counts fully; exactff view has the shares of what is "
+           "seen";
   }
-  std::cout << "\n\n";
-  const bool blocks = !point.every_patch || args.explain || args.exact_fraction || args.gradient;
+  if (!scene.transparent().empty()) return "transparent patches count fully, and so does what is seen through them";
+  return "the share that reaches no patch's front: it leaves the scene or meets the back of a face";
+}
+
+std::string missing_words(const Enclosure& missing, const std::string& meaning, int digits) {
+  const double low = missing.lower(), high = missing.upper();
+  if (low <= 0.0 && high >= 0.0) {
+    const double most = std::max(-low, high);
+    return most == 0.0 ? "0 (exactly)" : "0, to within " + text::short_number(most, 2);
+  }
+  const std::string number = sum_text(missing, digits).value_or(between(missing));
+  return number + "  (" + (high < 0.0 ? "the sum exceeds 1: " : "") + meaning + ')';
+}
+
+// One row per source, their sum and what is missing to 1.
+void print_patch_table(const PointArguments& args, const Scene& scene, const PointResult& point) {
+  const bool visible = args.fraction || args.exact_fraction;
+  TextTable table;
+  table.add_column("patch");
+  table.add_column("form factor");
+  table.add_column("status");
+  if (visible) table.add_column("visible");
+  if (args.adaptive) table.add_column("ray-sampled adaptive");
+  table.add_column("emits");
   for (const PointTerm& one : point.sources) {
-    if (blocks) print_source(args, scene, one);
+    std::vector<std::string> cells = {scene.name_of(one.source), value_text(one.exact, args.digits),
+                                      std::string(to_string(one.exact.status))};
+    if (visible) cells.push_back(shortest(one.exact.visible_fraction.value_or(0.0)));
+    if (args.adaptive) cells.push_back(shortest(one.adaptive->form_factor));
+    cells.emplace_back(one.emits ? "yes" : "-");
+    table.add_row(std::move(cells));
   }
-  if (point.every_patch) {
-    if (blocks) std::cout << '\n';
-    print_patch_table(args, scene, point);
-  } else if (point.sources.size() > 1) {
-    print_sum(args, "sum of " + text::counted(point.sources.size(), "source"), point.sum);
-    if (point.is_mixed())
-      print_sum(args,
-                "sum of the " + std::to_string(point.emitters) + (point.emitters == 1 ? " that emits" : " that emit"),
-                point.sum_of_emitters);
+  table.print(std::cout);
+  std::cout << "\nsum           " << sum_text(point.sum, args.digits).value_or(between(point.sum)) << "  (of "
+            << text::counted(point.sources.size(), "patch", "patches") << ", added as balls)\nmissing to 1  "
+            << missing_words(missing_to_one(point.sum), missing_meaning(scene, point), args.digits) << '\n';
+  if (point.is_mixed()) {
+    std::cout << "emitters      "
+              << sum_text(point.sum_of_emitters, args.digits).value_or(between(point.sum_of_emitters))
+              << "  (the sum over the " << text::counted(point.emitters, "patch", "patches")
+              << (point.emitters == 1 ? " that emits)\n" : " that emit)\n");
   }
-  std::cout << "\nradiosity received  " << rgb_text(point.radiosity) << "  " << radiosity_words(point) << '\n';
 }
 
-namespace {
+// --- JSON ---
 
 nlohmann::ordered_json numbers_json(const Vec3& v) { return nlohmann::ordered_json::array({v.x, v.y, v.z}); }
 nlohmann::ordered_json numbers_json(const Rgb& c) { return nlohmann::ordered_json::array({c.r, c.g, c.b}); }
@@ -362,6 +366,60 @@ nlohmann::ordered_json source_json(const PointArguments& args, const Scene& scen
 }
 
 }  // namespace
+
+std::string plain_value(const FormFactor& result) {
+  if (result.status == Status::kZero) return "0";
+  if (result.status == Status::kUnderflow) return "0.0";
+  return shortest(result.value);
+}
+
+std::string plain_gradient(const FormFactor& result) {
+  std::string line = plain_value(result);
+  if (result.gradient->kink) return line + "\tkink";
+  for (const Derivative& d : result.gradient->position) line += '\t' + plain_derivative(d);
+  return line;
+}
+
+std::string value_text(const FormFactor& result, int digits) {
+  if (result.status == Status::kZero) return "0";
+  if (digits > 0) {
+    if (const std::optional<std::string> decimals = result.enclosure.decimals(digits)) return *decimals;
+  }
+  return plain_value(result);
+}
+
+std::optional<std::string> sum_text(const Enclosure& sum, int digits) {
+  if (digits > 0) {
+    if (auto decimals = sum.decimals(digits)) return decimals;
+  }
+  const std::optional<double> nearest = sum.nearest();
+  return nearest ? std::optional(shortest(*nearest)) : std::nullopt;
+}
+
+void print_point_table(const PointArguments& args, const Scene& scene, const PointResult& point) {
+  std::cout << "receiver " << vec_text(point.receiver.point) << ", normal " << vec_text(point.receiver.normal);
+  if (!point.receiver.on.empty()) std::cout << ", on " << text::printable(scene.name_of(point.receiver.on));
+  if (const std::optional<FaceId> cover = buried_under(scene, point.receiver)) {
+    std::cout << "\nburied under " << shown_name(scene, *cover)
+              << ": a closed solid stands on the receiver's face there, so it sees nothing";
+  }
+  std::cout << "\n\n";
+  const bool blocks = !point.every_patch || args.explain || args.exact_fraction || args.gradient;
+  for (const PointTerm& one : point.sources) {
+    if (blocks) print_source(args, scene, one);
+  }
+  if (point.every_patch) {
+    if (blocks) std::cout << '\n';
+    print_patch_table(args, scene, point);
+  } else if (point.sources.size() > 1) {
+    print_sum(args, "sum of " + text::counted(point.sources.size(), "source"), point.sum);
+    if (point.is_mixed())
+      print_sum(args,
+                "sum of the " + std::to_string(point.emitters) + (point.emitters == 1 ? " that emits" : " that emit"),
+                point.sum_of_emitters);
+  }
+  std::cout << "\nradiosity received  " << rgb_text(point.radiosity) << "  " << radiosity_words(point) << '\n';
+}
 
 void print_point_json(const PointArguments& args, const Scene& scene, const PointResult& point) {
   nlohmann::ordered_json json = {{"program", "exactff"},

@@ -6,9 +6,8 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/long_run.h"
 #include "cli/output.h"
-#include "cli/text_table.h"
+#include "cli/process.h"
 #include "flags/file_options.h"
 #include "report/plan.h"
 #include "text/escape.h"

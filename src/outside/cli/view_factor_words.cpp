@@ -1,21 +1,22 @@
 #include "cli/view_factor_words.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <functional>
-#include <string>
-#include <utility>
-#include <vector>
+#include <iostream>
 
 #include "cli/output.h"
 #include "exactff/slips.h"
-#include "flags/lists.h"
+#include "flags/values.h"
+#include "matrix/entry_jobs.h"
+#include "text/escape.h"
 #include "text/nearest_names.h"
 #include "text/phrases.h"
 #include "text/text_lines.h"
 
 namespace exactff::cli {
-
 namespace {
 
 struct Wide {
@@ -154,6 +155,46 @@ std::vector<Problem> problems_of_width(const Scene& scene, const matrix::Matrix&
                         .suggestion = what_helps(limit, options.certify)});
   }
   return problems;
+}
+
+void LateNote::follow(const Progress& progress) {
+  if (!done_before_) done_before_ = progress.done;
+  if (progress.total <= *done_before_) return;
+  share_done_ =
+      static_cast<double>(progress.done - *done_before_) / static_cast<double>(progress.total - *done_before_);
+}
+
+void LateNote::tell_if_late() {
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+  if (elapsed.count() < kLate || told_) return;
+  const double left = elapsed.count() * (1.0 - share_done_) / share_done_;  // infinite as long as nothing is done
+  if (left < kLate) return;
+  const std::string slow = matrix::EntryJobs::slow_of_thread(kSlow);
+  if (slow.empty() && elapsed.count() < kLate + kSlow) return;  // another thread may have a name to tell
+  if (told_.exchange(true)) return;
+  const std::string what = slow.empty() ? "" : "It is slow " + text::printable(slow) + ". ";
+  const std::string clear_line = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
+  std::cerr << clear_line + "note: this takes more than " + text::short_number(kLate) + " s. " + what + text_ + '\n';
+}
+
+std::string words_on_speed(const matrix::Request& request) {
+  const ViewFactorOptions& factors = request.options.factors;
+  constexpr double kCoarse = 1e-3;
+  constexpr double kFine = 1e-9;  // below, certified entries cost less (validation/view_factors.md)
+  std::vector<std::string> ways;
+  if (factors.certify && factors.accuracy >= kFine) ways.emplace_back("no --certify, so that errors are estimated");
+  if (!factors.certify && factors.accuracy < kFine)
+    ways.emplace_back("--certify, which needs fewer cells for so little");
+  if (factors.both_directions) ways.emplace_back("no --both-directions");
+  if (factors.accuracy < kCoarse) {
+    ways.push_back("--accuracy " + text::short_number(kCoarse) + " instead of " + text::shortest(factors.accuracy));
+  }
+  ways.push_back("a smaller --budget than " + std::to_string(factors.budget) + ", for wider entries");
+  if (request.options.backs) ways.emplace_back("no --backs");
+  if (request.from.size() > 1) {
+    ways.push_back("fewer rows than " + std::to_string(request.from.size()) + " by --from");
+  }
+  return "Faster: " + text::joined(ways, "; ");
 }
 
 }  // namespace exactff::cli

@@ -1,6 +1,4 @@
 // What the program says to flags that are misspelt or have the wrong number of numbers.
-#include "cli/misused_flags.h"
-
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,8 +1,6 @@
-#include "flags/lists.h"
+#include "flags/values.h"
 
 #include <algorithm>
-#include <array>
-#include <string_view>
 
 #include "scene/selections.h"
 #include "text/nearest_names.h"
@@ -46,6 +44,18 @@ void refuse_other_names_of_sky(const Scene& scene, const std::string& name) {
   if (std::ranges::find(kOthers, text::in_lower_case(name)) == kOthers.end()) return;
   text::refuse("there is no patch named " + text::in_quotes(name, text::kShownName),
                "what is open, all directions that meet nothing, is called sky here", "write sky instead");
+}
+
+// If numbers are missing, the flag that follows would be read as one of them.
+std::string is_no_flag(const std::string& text) {
+  return text.starts_with("--") ? "needs three numbers; found '" + text + "' among them" : "";
+}
+
+double finite_number(const std::string& text, const std::string& flag) {
+  const text::ParsedNumber number = text::parse_number(text);
+  if (number.fault == text::NumberFault::kNone) return number.value;
+  text::refuse(flag + ": " + describe(number.fault, text), "a coordinate is a finite decimal number",
+               "give three numbers, for example " + flag + " 0 0.5 -1e-3");
 }
 
 }  // namespace
@@ -97,6 +107,15 @@ bool names_all(const Scene& scene, const std::vector<std::string>& texts) {
     if (parts.size() > 1 && is_a_name(scene, text)) return false;
     return std::ranges::any_of(parts, [&](const std::string& part) { return means_all(scene, part); });
   });
+}
+
+CLI::Option* add_vector_option(CLI::App& app, const std::string& flag, ThreeNumbers& numbers,
+                               const std::string& meaning, const std::string& type) {
+  return app.add_option(flag, numbers, meaning)->type_name(type)->check(is_no_flag);
+}
+
+Vec3 vector_of(const ThreeNumbers& numbers, const std::string& flag) {
+  return {finite_number(numbers[0], flag), finite_number(numbers[1], flag), finite_number(numbers[2], flag)};
 }
 
 }  // namespace exactff::flags
