@@ -481,10 +481,9 @@ void add_matching(CLI::App& command, CheckArguments& args) {
                   "The candidate's column of sources (default: source; to); needed only if the truth has several")
       ->type_name("NAME");
   command
-      .add_option(
-          "--truth-column", args.truth_column,
-          "The truth's column to compare with, such as unoccluded, radiosity_g, total_g or dF_dx; of an image its "
-          "layer or channel")
+      .add_option("--truth-column", args.truth_column,
+                  "The truth's column to compare with, such as unoccluded, radiosity_g, total_g or dF_dx; of an image "
+                  "its layer or channel")
       ->capture_default_str()
       ->type_name("NAME");
   command.add_option("--match", args.match, "How rows are matched: by the receiver's id or by its position")
@@ -525,12 +524,9 @@ void add_criteria(CLI::App& command, CheckArguments& args) {
   command.add_option("--relative-floor", args.relative_floor, "Divide by at least this number in relative errors")
       ->capture_default_str()
       ->type_name("NUMBER");
-  command.add_option("--baseline", args.baseline, "Fail if errors are worse than those recorded in this file")
-      ->type_name("FILE")
-      ->check(flags::is_read());
-  command.add_option("--write-baseline", args.write_baseline, "Record the errors of this run")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kJson));
+  flags::add_read(command, "--baseline", args.baseline, "Fail if errors are worse than those recorded in this file");
+  flags::add_written(command, "--write-baseline", args.write_baseline, "Record the errors of this run",
+                     flags::Format::kJson);
   command.add_option("--slack", args.slack, "Share by which errors may exceed the baseline: 0.1 allows 10 % more")
       ->capture_default_str()
       ->type_name("SHARE");
@@ -545,15 +541,9 @@ void add_outputs(CLI::App& command, CheckArguments& args) {
   command.add_option("--worst", args.worst, "Number of rows to list, worst first")
       ->capture_default_str()
       ->type_name("N");
-  command.add_option("--plot", args.plot, "Draw the histogram of the errors as SVG")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kSvg));
-  command.add_option("--junit", args.junit, "Write the verdicts as JUnit XML")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kXml));
-  command.add_option("--json", args.json, "Write everything as JSON")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kJson));
+  flags::add_written(command, "--plot", args.plot, "Draw the histogram of the errors as SVG", flags::Format::kSvg);
+  flags::add_written(command, "--junit", args.junit, "Write the verdicts as JUnit XML", flags::Format::kXml);
+  flags::add_written(command, "--json", args.json, "Write everything as JSON", flags::Format::kJson);
   command.add_flag("--github", args.github, "Also print annotations for GitHub Actions");
 }
 
@@ -564,17 +554,14 @@ Command add_check(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("check", "Compare the values of another program with a truth file: pass or fail");
   command
-      ->add_option(
-          "TRUTH", args->truth,
-          "File written by `exactff truth` or `exactff matrix -o`, or exact.csv of `exactff compare`; or an image, "
-          ".exr or .npy")
+      ->add_option("TRUTH", args->truth,
+                   "File written by `exactff truth` or `exactff matrix -o`, or exact.csv of `exactff compare`; or an "
+                   "image, .exr or .npy")
       ->required()
       ->type_name("FILE")
       ->check(flags::is_read());
-  command->add_option("CANDIDATE", args->candidate, "CSV file of the values to judge; or an image, or a matrix")
-      ->required()
-      ->type_name("FILE")
-      ->check(flags::is_read());
+  flags::add_read(*command, "CANDIDATE", args->candidate, "CSV file of the values to judge; or an image, or a matrix")
+      ->required();
   add_matching(*command, *args);
   add_criteria(*command, *args);
   add_outputs(*command, *args);

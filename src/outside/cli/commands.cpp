@@ -1,5 +1,7 @@
 // All commands of the program, and those that explain it: `exactff help`, and `exactff completion`, which is not
 // listed, since only the installation calls it.
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -179,7 +181,7 @@ std::string bash_offer(const OptionRow& row) {
 }
 
 std::string bash_case(const std::string& pattern, const std::string& body) {
-  return "    " + pattern + ") " + body + " ;;\n";
+  return fmt::format("    {}) {} ;;\n", pattern, body);
 }
 
 std::string bash_values(const CommandTable& command) {
@@ -189,14 +191,15 @@ std::string bash_values(const CommandTable& command) {
     for (const std::string& name : option.names) {
       pattern += (pattern.empty() ? "" : " | ") + single_quoted(command.name + " " + name);
     }
-    const std::string most = std::to_string(option.most_values);
-    if (option.most_values > 0) lines += bash_case(pattern, "most=" + most + " offer=" + bash_offer(option));
+    if (option.most_values > 0) {
+      lines += bash_case(pattern, fmt::format("most={} offer={}", option.most_values, bash_offer(option)));
+    }
   }
   return lines;
 }
 
 std::string bash_function(const std::string& name, const std::string& cases) {
-  return "\n" + name + "() {\n  case $1 in\n" + cases + "  esac\n}\n";
+  return fmt::format("\n{}() {{\n  case $1 in\n{}  esac\n}}\n", name, cases);
 }
 
 std::string bash_completion(const ProgramTable& program) {
@@ -241,9 +244,8 @@ Command add_completion(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("completion", "Print the script for command-line completion in a shell")->group("");
   command->add_option("SHELL", args->shell, "bash")->required()->check(CLI::IsMember({"bash"}));
-  command->add_option("-o,--output", args->file, "File to write instead of standard output")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kAny));
+  flags::add_written(*command, "-o,--output", args->file, "File to write instead of standard output",
+                     flags::Format::kAny);
   return {command, [args, &app] {
             const std::string script = bash_completion(program_table(app));
             if (!args->file.empty()) {

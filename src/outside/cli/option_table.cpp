@@ -1,5 +1,7 @@
 #include "cli/option_table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -68,7 +70,7 @@ std::string range_note(const std::string& check) {
   const std::string range = between(check, " in [", ']');
   const std::size_t dash = range.find(" - ");
   if (dash == std::string::npos) return {};
-  return " (" + range.substr(0, dash) + " to " + range.substr(dash + 3) + ")";
+  return fmt::format(" ({} to {})", range.substr(0, dash), range.substr(dash + 3));
 }
 
 std::string description_of(const CLI::Option& option, const TypeText& type) {
@@ -220,10 +222,10 @@ std::optional<std::string> nearest_flag(const CommandTable& command, const std::
 
 Problem unknown(const CommandTable& command, const GivenFlag& flag) {
   const std::optional<std::string> nearest = nearest_flag(command, flag.name);
-  return {
-      .what = "exactff " + command.name + " has no flag " + flag.name,
-      .why = "the command line has " + text::in_quotes(flag.text()),
-      .suggestion = nearest ? "did you mean " + *nearest + "?" : "`exactff help " + command.name + "` lists its flags"};
+  return {.what = fmt::format("exactff {} has no flag {}", command.name, flag.name),
+          .why = "the command line has " + text::in_quotes(flag.text()),
+          .suggestion = nearest ? fmt::format("did you mean {}?", *nearest)
+                                : fmt::format("`exactff help {}` lists its flags", command.name)};
 }
 
 // The numbers as they should be written; the placeholders if they are not as many as they should be.
@@ -245,9 +247,9 @@ std::optional<Problem> wrong_count(const OptionRow& option, const GivenFlag& fla
   const auto end = std::ranges::find_if_not(flag.words, looks_like_numbers);
   const std::vector<std::string> found(flag.words.begin(), end);
   if (found.size() == needed && std::ranges::all_of(found, is_number)) return std::nullopt;
-  return Problem{.what = flag.name + " takes " + kNames.at(needed) + " numbers with spaces between them",
+  return Problem{.what = fmt::format("{} takes {} numbers with spaces between them", flag.name, kNames.at(needed)),
                  .why = found.empty() ? "it has none" : "it has " + text::in_quotes(text::joined(found, " ")),
-                 .suggestion = "write " + flag.name + ' ' + with_spaces(option, found)};
+                 .suggestion = fmt::format("write {} {}", flag.name, with_spaces(option, found))};
 }
 
 bool takes_a_vector(const OptionRow& option) { return option.least_values == 3 && option.most_values == 3; }
@@ -275,8 +277,8 @@ Problem without_value(const CommandTable& command, const OptionRow& option, cons
   const bool may_be_meant = !next.empty() && option_named(command, std::string(name_in(next))) == nullptr;
   return {.what = name + " needs " + kind_of_value(option),
           .why = next.empty() ? "nothing follows it" : next + " follows, which begins like a flag",
-          .suggestion = "write " + name + ' ' + option.value +
-                        (may_be_meant ? ", or " + name + '=' + next + " if that is meant" : "")};
+          .suggestion = fmt::format("write {} {}", name, option.value) +
+                        (may_be_meant ? fmt::format(", or {}={} if that is meant", name, next) : "")};
 }
 
 // Nothing for words that begin with no command of the table.

@@ -1,6 +1,8 @@
 // exactff point: the exact form factor from one receiver to one source, or to all.
 #include "cli/point.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iostream>
 #include <utility>
@@ -36,7 +38,7 @@ std::vector<Selection> make_sources(const PointArguments& args, const Scene& sce
   }
   if (args.plain && sources.size() != 1) {
     throw InputError({.file = {},
-                      .what = "--plain prints one value, but there are " + std::to_string(sources.size()) + " sources",
+                      .what = fmt::format("--plain prints one value, but there are {} sources", sources.size()),
                       .why = {},
                       .suggestion = "name one with --source NAME, or use --json"});
   }
@@ -189,8 +191,8 @@ std::string effect_of(const Scene& scene, const PointResult& point, const Receiv
   for (const PointTerm& one : point.sources) {
     const FormFactor there = exact_form_factor(scene, receiver, ExactSource(scene, one.source));
     if (there.value == one.exact.value) continue;
-    text += (text.empty() ? "the form factor of '" : ", of '") + shown_name(scene, one.source) + "' is " +
-            text::shortest(there.value) + " instead of " + text::shortest(one.exact.value);
+    text += fmt::format("{} '{}' is {} instead of {}", text.empty() ? "the form factor of" : ", of",
+                        shown_name(scene, one.source), text::shortest(there.value), text::shortest(one.exact.value));
   }
   return text;
 }
@@ -350,11 +352,10 @@ std::string is_a_tolerance(const std::string& text) {
 
 void add_receiver_flags(CLI::App& app, PointArguments& args) {
   args.receiver.add_to(app);
-  app.add_option(
-         "--source", args.sources,
-         std::string("Source patch or face") + flags::kNamesHelp +
-             "; all: a table of every patch, with the sum and what is missing to 1 (default: every emitting patch, and "
-             "their sum)")
+  app.add_option("--source", args.sources,
+                 std::string("Source patch or face") + flags::kNamesHelp +
+                     "; all: a table of every patch, with the sum and what is missing to 1 (default: every emitting "
+                     "patch, and their sum)")
       ->type_name("NAME[:K]");
   app.add_option(
          "--reflectance", args.reflectance,
@@ -376,8 +377,8 @@ void add_output_flags(CLI::App& app, PointArguments& args) {
                "Also print the visible fractions as exact rationals, one per plane of the source");
   app.add_flag("--gradient", args.gradient,
                "Also print dF/dx, dF/dy, dF/dz, per unit of length, and the vector V with F = n . V / |n|; where the "
-               "derivative does not exist (a kink), the reason. With --plain: one line of value and derivatives, or "
-               "of value and the word kink, separated by tabs");
+               "derivative does not exist (a kink), the reason. With --plain: one line of value and derivatives, or of "
+               "value and the word kink, separated by tabs");
   app.add_flag("--vertices", args.vertices,
                "With --gradient: also the derivatives by the coordinates of every vertex that moves the visible "
                "boundary, per unit of length. Vertices at equal coordinates move together");
@@ -390,10 +391,9 @@ void add_output_flags(CLI::App& app, PointArguments& args) {
   plain->excludes(json);
   app.add_flag("--explain", args.explain,
                "Show which stages ran, which were skipped and why, and the occluders that hide a part of the source");
-  app.add_option("--svg", args.svg,
-                 "Draw the source in its plane, with the shadows of the occluders and the visible region")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kSvg));
+  flags::add_written(app, "--svg", args.svg,
+                     "Draw the source in its plane, with the shadows of the occluders and the visible region",
+                     flags::Format::kSvg);
 }
 
 void add_adaptive_flags(CLI::App& app, PointArguments& args) {

@@ -1,4 +1,6 @@
 // What exactff point prints and draws.
+#include <fmt/format.h>
+
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -23,7 +25,7 @@ std::string plain_derivative(const Derivative& d) {
 
 constexpr std::size_t kMostSharesShown = 20;
 
-std::string vec_text(const Vec3& v) { return "(" + shortest(v.x) + ", " + shortest(v.y) + ", " + shortest(v.z) + ")"; }
+std::string vec_text(const Vec3& v) { return fmt::format("({}, {}, {})", shortest(v.x), shortest(v.y), shortest(v.z)); }
 
 void print_stages(const Scene& scene, const PointTerm& one) {
   constexpr std::size_t kMostPlanes = 12;
@@ -69,8 +71,8 @@ void print_exact_fractions(const Scene& scene, const PointTerm& one) {
 
 std::string derivative_words(const Derivative& d) {
   const bool holds_zero = d.status == DerivativeStatus::kEnclosed && d.value == 0.0;
-  if (holds_zero) return "0.0  (enclosed: within " + d.enclosure.radius() + " of " + d.enclosure.midpoint() + ")";
-  return plain_derivative(d) + "  (" + std::string(to_string(d.status)) + ")";
+  if (holds_zero) return fmt::format("0.0  (enclosed: within {} of {})", d.enclosure.radius(), d.enclosure.midpoint());
+  return fmt::format("{}  ({})", plain_derivative(d), to_string(d.status));
 }
 
 std::string names_of(const Scene& scene, const std::vector<FaceId>& faces) {
@@ -107,8 +109,8 @@ void print_arcs(const Gradient& gradient) {
   for (std::size_t i = 0; i < gradient.arcs.size() && i < kMostArcs; ++i) {
     const GradientArc& arc = gradient.arcs[i];
     const auto brief = [](const Vec3& v) {
-      return "(" + text::short_number(v.x, 6) + ", " + text::short_number(v.y, 6) + ", " + text::short_number(v.z, 6) +
-             ")";
+      return fmt::format("({}, {}, {})", text::short_number(v.x, 6), text::short_number(v.y, 6),
+                         text::short_number(v.z, 6));
     };
     std::cout << "    the line through " << brief(arc.begin) << " and " << brief(arc.end) << " adds " << brief(arc.part)
               << '\n';
@@ -169,16 +171,17 @@ void print_sum(const PointArguments& args, const std::string& title, const Enclo
             << "\n  enclosure    [" << shortest(sum.lower()) << ", " << shortest(sum.upper()) << "]\n";
 }
 
-std::string rgb_text(const Rgb& c) { return shortest(c.r) + ' ' + shortest(c.g) + ' ' + shortest(c.b); }
+std::string rgb_text(const Rgb& c) { return fmt::format("{} {} {}", shortest(c.r), shortest(c.g), shortest(c.b)); }
 
 std::string radiosity_words(const PointResult& point) {
   const std::size_t others = point.sources.size() - point.emitters;
   if (others == 0) return "(reflectance x Ke of the source x form factor, per channel)";
   if (point.emitters == 0) return "(reflectance x 1 x form factor, per channel, since nothing is emitted)";
-  return "(reflectance x Ke x form factor, per channel, over the " + text::counted(point.emitters, "source") +
-         (point.emitters == 1 ? " that emits)" : " that emit)") + "\n  not added         " +
-         rgb_text(point.radiosity_of_others) + "  (from the " + std::to_string(others) +
-         (others == 1 ? " that emits" : " that emit") + " nothing, with a radiosity of 1)";
+  return fmt::format(
+      "(reflectance x Ke x form factor, per channel, over the {} that {})\n  not added         {}  (from the {} that "
+      "{} nothing, with a radiosity of 1)",
+      text::counted(point.emitters, "source"), point.emitters == 1 ? "emits" : "emit",
+      rgb_text(point.radiosity_of_others), others, others == 1 ? "emits" : "emit");
 }
 
 // --- the table of --source all: what the receiver sees of every patch, and what is missing to 1 ---
@@ -191,7 +194,7 @@ Enclosure missing_to_one(const Enclosure& sum) {
 }
 
 std::string between(const Enclosure& sum) {
-  return "between " + shortest(sum.lower()) + " and " + shortest(sum.upper());
+  return fmt::format("between {} and {}", shortest(sum.lower()), shortest(sum.upper()));
 }
 
 // What 1 less the sum is.
@@ -211,7 +214,7 @@ std::string missing_words(const Enclosure& missing, const std::string& meaning, 
     return most == 0.0 ? "0 (exactly)" : "0, to within " + text::short_number(most, 2);
   }
   const std::string number = sum_text(missing, digits).value_or(between(missing));
-  return number + "  (" + (high < 0.0 ? "the sum exceeds 1: " : "") + meaning + ')';
+  return fmt::format("{}  ({}{})", number, high < 0.0 ? "the sum exceeds 1: " : "", meaning);
 }
 
 // One row per source, their sum and what is missing to 1.
@@ -414,8 +417,7 @@ void print_point_table(const PointArguments& args, const Scene& scene, const Poi
   } else if (point.sources.size() > 1) {
     print_sum(args, "sum of " + text::counted(point.sources.size(), "source"), point.sum);
     if (point.is_mixed())
-      print_sum(args,
-                "sum of the " + std::to_string(point.emitters) + (point.emitters == 1 ? " that emits" : " that emit"),
+      print_sum(args, fmt::format("sum of the {} that {}", point.emitters, point.emitters == 1 ? "emits" : "emit"),
                 point.sum_of_emitters);
   }
   std::cout << "\nradiosity received  " << rgb_text(point.radiosity) << "  " << radiosity_words(point) << '\n';

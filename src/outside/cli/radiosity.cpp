@@ -538,19 +538,17 @@ int run(const RadiosityArguments& given) {
 }
 
 void add_outputs(CLI::App& command, RadiosityArguments& args) {
-  auto* plain = command.add_flag("--plain", args.plain,
-                                 "Print a line for each patch and channel: PATCH, CHANNEL, RADIOSITY, LOWER, UPPER, "
-                                 "CLAIM, with tabs");
+  auto* plain = command.add_flag(
+      "--plain", args.plain,
+      "Print a line for each patch and channel: PATCH, CHANNEL, RADIOSITY, LOWER, UPPER, CLAIM, with tabs");
   auto* json = command.add_flag("--json", args.json, "Print JSON");
   auto* csv = command.add_flag("--csv", args.csv, "Print CSV");
   plain->excludes(json)->excludes(csv);
   json->excludes(csv);
-  command.add_option("-o,--output", args.output, "Write a CSV file")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kCsv, flags::Beside::kViewFactors));
-  command.add_option("--vtk", args.vtk, "Write the scene with its radiosities for ParaView, as NAME.vtp or NAME.vtu")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kVtk));
+  flags::add_written(command, "-o,--output", args.output, "Write a CSV file", flags::Format::kCsv,
+                     flags::Beside::kViewFactors);
+  flags::add_written(command, "--vtk", args.vtk,
+                     "Write the scene with its radiosities for ParaView, as NAME.vtp or NAME.vtu", flags::Format::kVtk);
   CLI::Option* resume =
       command.add_flag("--resume", args.resume,
                        "Continue an interrupted run with its kept view factors, or keep a complete file; needs -o");
@@ -581,9 +579,7 @@ Command add_radiosity(CLI::App& app) {
   CLI::Option* backs =
       command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces, for the balance");
   const ClaimOptions claims = add_claim(*command, args->options.factors.certify);
-  command->add_option("--matrix", args->matrix, "Take the view factors from this file of exactff matrix")
-      ->type_name("FILE")
-      ->check(flags::is_read())
+  flags::add_read(*command, "--matrix", args->matrix, "Take the view factors from this file of exactff matrix")
       ->excludes(accuracy)
       ->excludes(budget)
       ->excludes(backs)

@@ -1,6 +1,8 @@
 // exactff render: exact images of the direct light in a scene, or of the light of given radiosities.
 #include "exactff/render.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -300,11 +302,9 @@ Opponent opponent_named(const std::string& text, const render::Size& size) {
   const std::string extension = text::in_lower_case(std::filesystem::path(text).extension().string());
   if (extension != ".npy" && extension != ".exr") return {.method = method_named(text)};
   render::Picture picture = render::read_picture(text);
-  const auto words = [](const render::Size& one) {
-    return std::to_string(one.width) + 'x' + std::to_string(one.height);
-  };
+  const auto words = [](const render::Size& one) { return fmt::format("{}x{}", one.width, one.height); };
   if (words(picture.size) != words(size)) {
-    text::refuse(std::filesystem::path(text), "has " + words(picture.size) + " pixels, and the picture " + words(size),
+    text::refuse(fs::path(text), fmt::format("has {} pixels, and the picture {}", words(picture.size), words(size)),
                  "each pixel is compared with one of the same place", "give --size " + words(picture.size));
   }
   return {.picture = std::move(picture)};
@@ -462,10 +462,9 @@ void add_camera_flags(CLI::App& app, RenderArguments& args) {
 
 void add_value_flags(CLI::App& app, RenderArguments& args) {
   app.add_flag("--two-sided", args.two_sided, "Light the backs of faces, too, instead of showing them black");
-  app.add_option(
-         "--quantity", args.quantity,
-         "What a pixel holds: the radiance B / pi, the radiosity B, the irradiance, the sum of form factors, or "
-         "the length of its gradient along the surface")
+  app.add_option("--quantity", args.quantity,
+                 "What a pixel holds: the radiance B / pi, the radiosity B, the irradiance, the sum of form factors, "
+                 "or the length of its gradient along the surface")
       ->check(CLI::IsMember({"radiance", "radiosity", "irradiance", "form-factor", "gradient"}))
       ->capture_default_str();
   app.add_option("--ke", args.ke, "What Ke means in the scene")
@@ -479,21 +478,19 @@ void add_value_flags(CLI::App& app, RenderArguments& args) {
 }
 
 void add_output_flags(CLI::App& app, RenderArguments& args) {
-  app.add_flag("--layers", args.layers,
-               "EXR: add form factor, visible part and fraction of each source, position, normal, distance, face and "
-               "patch");
+  app.add_flag(
+      "--layers", args.layers,
+      "EXR: add form factor, visible part and fraction of each source, position, normal, distance, face and patch");
   app.add_option("--exposure", args.exposure, "PNG: multiply by this factor (default: the 99th percentile becomes 0.8)")
       ->type_name("NUMBER")
       ->check(flags::is_positive);
-  app.add_option(
-         "--double", args.doubles,
-         "Also write the numbers as a NumPy file of doubles, shape (height, width, 3), NaN where nothing is met")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kNpy));
-  app.add_option("--bounds", args.bounds,
-                 "Also write their bounds as a NumPy file, shape (2, height, width, 3): lower, upper")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kNpy));
+  flags::add_written(
+      app, "--double", args.doubles,
+      "Also write the numbers as a NumPy file of doubles, shape (height, width, 3), NaN where nothing is met",
+      flags::Format::kNpy);
+  flags::add_written(app, "--bounds", args.bounds,
+                     "Also write their bounds as a NumPy file, shape (2, height, width, 3): lower, upper",
+                     flags::Format::kNpy);
 }
 
 }  // namespace
@@ -510,13 +507,10 @@ Command add_render(CLI::App& app) {
   add_value_flags(*command, *args);
   add_output_flags(*command, *args);
   args->engine.add_to(*command);
-  command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
-  command->add_option("-o,--output", args->image, "Image to write, .exr or .png; an existing one is replaced")
-      ->required()
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kImage, flags::Beside::kJournal));
+  flags::add_threads(*command, args->threads);
+  flags::add_written(*command, "-o,--output", args->image, "Image to write, .exr or .png; an existing one is replaced",
+                     flags::Format::kImage, flags::Beside::kJournal)
+      ->required();
   CLI::Option* resume = command->add_flag("--resume", args->resume, "Continue an interrupted run, if there is one");
   command->add_flag("--force", args->force, "Start again: discard the tiles of an interrupted run")->excludes(resume);
   command->footer(kRenderFooter);

@@ -1,5 +1,6 @@
 #include "cli/view_factor_words.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -64,13 +65,13 @@ std::string words_of_wide(const Scene& scene, const matrix::Matrix& matrix, cons
   std::vector<std::string> named;
   for (const Wide& one : wide) {
     if (named.size() == kMostNamed) break;
-    named.push_back(text::in_quotes(scene.name_of(matrix.factors.from[one.row])) + " to " + one.to + " (" +
-                    words_of(one, accuracy) + ")");
+    named.push_back(fmt::format("{} to {} ({})", text::in_quotes(scene.name_of(matrix.factors.from[one.row])), one.to,
+                                words_of(one, accuracy)));
   }
   if (wide.size() > kMostNamed) named.emplace_back("...");
-  return text::counted(static_cast<std::uint64_t>(wide.size()), "entry", "entries") +
-         (wide.size() == 1 ? " is" : " are") + " wider than the accuracy " + text::shortest(accuracy) + ": " +
-         text::joined(named, ", ");
+  return fmt::format("{} wider than the accuracy {}: {}",
+                     text::counted(static_cast<std::uint64_t>(wide.size()), "entry is", "entries are"),
+                     text::shortest(accuracy), text::joined(named, ", "));
 }
 
 std::string why(Limit limit, std::size_t budget) {
@@ -93,8 +94,8 @@ std::string what_helps(Limit limit, bool certify) {
   switch (limit) {
     case Limit::kBudget:
     case Limit::kNone:
-      return std::string("give more by --budget, ask for less by --accuracy, ") +
-             (certify ? "divide patches by --divide" + estimates : "or divide patches by --divide");
+      return fmt::format("give more by --budget, ask for less by --accuracy, {}divide patches by --divide{}",
+                         certify ? "" : "or ", certify ? estimates : "");
     case Limit::kCrowd:
       return "divide patches by --divide" + (certify ? estimates : "");
     case Limit::kRounding:
@@ -187,12 +188,13 @@ std::string words_on_speed(const matrix::Request& request) {
     ways.emplace_back("--certify, which needs fewer cells for so little");
   if (factors.both_directions) ways.emplace_back("no --both-directions");
   if (factors.accuracy < kCoarse) {
-    ways.push_back("--accuracy " + text::short_number(kCoarse) + " instead of " + text::shortest(factors.accuracy));
+    ways.push_back(
+        fmt::format("--accuracy {} instead of {}", text::short_number(kCoarse), text::shortest(factors.accuracy)));
   }
-  ways.push_back("a smaller --budget than " + std::to_string(factors.budget) + ", for wider entries");
+  ways.push_back(fmt::format("a smaller --budget than {}, for wider entries", factors.budget));
   if (request.options.backs) ways.emplace_back("no --backs");
   if (request.from.size() > 1) {
-    ways.push_back("fewer rows than " + std::to_string(request.from.size()) + " by --from");
+    ways.push_back(fmt::format("fewer rows than {} by --from", request.from.size()));
   }
   return "Faster: " + text::joined(ways, "; ");
 }

@@ -1,5 +1,7 @@
 #include "flags/comparison.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <initializer_list>
 #include <iterator>
@@ -47,7 +49,7 @@ std::vector<T> list_of(const std::string& text, const std::string& flag, const C
   constexpr std::size_t kMostValues = 1000;
   for (const std::string& part : split_list(text)) values.push_back(convert(part, flag));
   if (values.size() > kMostValues) {
-    text::refuse(flag + " has " + std::to_string(values.size()) + " values", "every setting is run at every receiver",
+    text::refuse(fmt::format("{} has {} values", flag, values.size()), "every setting is run at every receiver",
                  "give at most 1000; a dozen is usually enough");
   }
   return values;
@@ -56,7 +58,7 @@ std::vector<T> list_of(const std::string& text, const std::string& flag, const C
 int to_rays(const std::string& text, const std::string& flag) {
   const int rays = to_whole<int>(text, flag);
   if (rays >= 1 && rays <= kMostRays) return rays;
-  text::refuse(flag + ": " + text::in_quotes(text) + " is not between 1 and " + std::to_string(kMostRays),
+  text::refuse(fmt::format("{}: {} is not between 1 and {}", flag, text::in_quotes(text), kMostRays),
                "it is the number of shadow rays for every undecided leaf", "give numbers, for example 1,4,16");
 }
 
@@ -178,7 +180,7 @@ std::string abridged_grid(const std::string& grid) {
   const auto v =
       cross == std::string::npos ? std::nullopt : flags::whole_number<int>(std::string_view(grid).substr(cross + 1));
   if (!u || !v) return grid;  // refused later
-  return std::to_string(std::min(*u, kAbridgedGrid)) + 'x' + std::to_string(std::min(*v, kAbridgedGrid));
+  return fmt::format("{}x{}", std::min(*u, kAbridgedGrid), std::min(*v, kAbridgedGrid));
 }
 
 // Reduces settings that the user did not give.
@@ -227,32 +229,6 @@ Comparison comparison_of(ComparisonArguments args, bool abridged, int threads) {
   return comparison;
 }
 
-std::string command_words(const ComparisonArguments& args) {
-  std::string line;
-  const auto add = [&](const char* flag, const std::string& value) {
-    if (!value.empty()) line += std::string(" ") + flag + ' ' + text::shell_word(value);
-  };
-  line += command_words(args.scene) + command_words(args.receivers) + command_words(args.sources);
-  add("--eps-b", args.eps_b);
-  add("--eps-a", args.eps_a);
-  add("--rays", args.rays);
-  add("--seeds", args.seeds);
-  add("--pattern", args.pattern);
-  add("--variant", args.variant);
-  for (const std::string& method : args.methods) add("--method", method);
-  if (args.no_methods) line += " --no-methods";
-  if (args.sweep) line += " --sweep";
-  add("--method-seeds", args.method_seeds);
-  add("--method-receivers", args.method_receivers);
-  add("--method-budget", args.method_budget);
-  add("--sweep-budget", args.sweep_budget);
-  if (args.engine.engine() != Engine::kEdges) add("--engine", args.engine.name);
-  line += command_words(args.camera);
-  add("--title", args.title);
-  if (args.unless_abridged) line += " --unless-abridged";
-  return line;
-}
-
 void ComparisonArguments::add_to(CLI::App& app) {
   scene.add_to(app);
   add_receiver_options(app, receivers);
@@ -275,8 +251,7 @@ void ComparisonArguments::add_to(CLI::App& app) {
       ->type_name("LIST");
   CLI::Option* method =
       app.add_option("--method", methods,
-                     "A method to compare with the exact values; can be repeated (default: all, and the "
-                     "sweep)")
+                     "A method to compare with the exact values; can be repeated (default: all, and the sweep)")
           ->type_name("METHOD")
           ->take_all();
   app.add_flag("--no-methods", no_methods,

@@ -48,9 +48,6 @@ struct Comparison {
 // "cornell_box.obj" for a path, "teapot:segments=8" for a model.
 [[nodiscard]] std::string short_name(const std::string& scene);
 
-// The flags again, each preceded by a blank and quoted for a shell. SCENE is not among them.
-[[nodiscard]] std::string command_words(const ComparisonArguments& args);
-
 // --- the study file ---
 //
 //   # a comment

@@ -62,9 +62,6 @@ void check_standard_input(const SceneArguments& scene, const ReceiverArguments& 
 // Checks the flags, too. Throws InputError, also if the named receivers are none.
 ChosenReceivers receivers_of(const ReceiverArguments& args, const Scene& scene, GridIds grid_ids = GridIds::kUnique);
 
-// The flags again, each preceded by a blank and quoted for a shell.
-std::string command_words(const ReceiverArguments& args);
-
 // --- sources ---
 
 struct SourceArguments {
@@ -88,8 +85,5 @@ SourcesUnderSky sources_under_sky(const SourceArguments& args, const Scene& scen
 
 // A sentence that names those of the sources that emit nothing, and says how they count; empty if all emit.
 std::string note_on_sources_without_emission(const Scene& scene, const std::vector<Selection>& sources);
-
-// The flags again, each preceded by a blank and quoted for a shell.
-std::string command_words(const SourceArguments& args);
 
 }  // namespace exactff::flags

@@ -1,5 +1,7 @@
 #include "flags/scene.h"
 
+#include <fmt/format.h>
+
 #include <iostream>
 #include <utility>
 
@@ -14,14 +16,6 @@
 
 namespace exactff::flags {
 namespace {
-
-CLI::Option* add_names(CLI::App& app, const std::string& flag, std::vector<std::string>& names,
-                       const std::string& meaning) {
-  return app.add_option(flag, names, meaning + kNamesHelp)
-      ->type_name("NAME[:K]")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-}
 
 std::vector<Selection> changed(const Scene& scene, const std::string& flag, const std::vector<std::string>& names) {
   std::vector<Selection> selections = selections_named(scene, names);
@@ -64,11 +58,10 @@ void SceneArguments::add_to(CLI::App& app) {
 }
 
 void SceneArguments::add_divide_to(CLI::App& app) {
-  app.add_option(
-         "--divide", divide,
-         "Cut the faces into cells with sides of at most this length, each a patch NAME:k; NAME means all of them. A "
-         "cell that is not exactly planar becomes two triangles, whose common side may be longer. In --flip and "
-         "--transparent, NAME:k is a face of the scene that is cut")
+  app.add_option("--divide", divide,
+                 "Cut the faces into cells with sides of at most this length, each a patch NAME:k; NAME means all of "
+                 "them. A cell that is not exactly planar becomes two triangles, whose common side may be longer. In "
+                 "--flip and --transparent, NAME:k is a face of the scene that is cut")
       ->type_name("LENGTH")
       ->check(is_positive);
 }
@@ -86,16 +79,6 @@ Scene SceneArguments::load() const {
   if (!flip.empty()) scene = scene.with_flipped(changed(scene, "--flip", flip));
   if (!transparent.empty()) scene = scene.with_transparent(changed(scene, "--transparent", transparent));
   return divide ? divided_with_note(scene, *divide) : std::move(scene);
-}
-
-std::string command_words(const SceneArguments& args) {
-  std::string line;
-  if (args.patches != "groups") line += " --patches " + text::shell_word(args.patches);
-  if (args.skip_bad_faces) line += " --skip-bad-faces";
-  for (const std::string& names : args.flip) line += " --flip " + text::shell_word(names);
-  for (const std::string& names : args.transparent) line += " --transparent " + text::shell_word(names);
-  if (args.divide) line += " --divide " + text::shortest(*args.divide);
-  return line;
 }
 
 // --- the scene that a file of radiosities belongs to ---
@@ -129,12 +112,9 @@ Scene made_as_in(const radiosity::SolutionFile& file, SceneArguments scene) {
 }  // namespace
 
 void SolutionArgument::add_to(CLI::App& app) {
-  app.add_option(
-         "--radiosity", file,
-         "Light after all bounces: radiosities of all patches, by `exactff radiosity SCENE -o FILE`; --divide and "
-         "--two-sided of that command are taken from the file")
-      ->type_name("FILE")
-      ->check(is_read());
+  add_read(app, "--radiosity", file,
+           "Light after all bounces: radiosities of all patches, by `exactff radiosity SCENE -o FILE`; --divide and "
+           "--two-sided of that command are taken from the file");
 }
 
 LitScene load(const SceneArguments& scene, const SolutionArgument& solution) {
@@ -163,17 +143,17 @@ void CameraArguments::add_to(CLI::App& app, const std::string& eye_meaning, cons
                     "The direction that points upwards in the picture (default: 0 0 1 if more area of fronts looks "
                     "along +z than along +y; else 0 1 0)");
   app.add_option("--fov", fov,
-                 "Vertical angle of view in degrees (default: " + text::shortest(render::Camera{}.fov) + "; " +
-                     text::shortest(render::kWideFov) + " where the program places a camera inside a closed room)")
+                 fmt::format("Vertical angle of view in degrees (default: {}; {} where the program places a camera "
+                             "inside a closed room)",
+                             text::shortest(render::Camera{}.fov), text::shortest(render::kWideFov)))
       ->type_name("DEGREES")
       ->check(is_positive);
 }
 
 bool CameraArguments::is_placed() const {
   if (is_given(eye) == is_given(look)) return is_given(eye);
-  text::refuse(
-      std::string(is_given(eye) ? "--eye" : "--look") + " is given without " + (is_given(eye) ? "--look" : "--eye"),
-      "a camera stands at one point and looks at another", "give both, or neither for a view of the whole");
+  text::refuse(is_given(eye) ? "--eye is given without --look" : "--look is given without --eye",
+               "a camera stands at one point and looks at another", "give both, or neither for a view of the whole");
 }
 
 render::CameraWishes CameraArguments::wishes() const {
@@ -194,20 +174,6 @@ render::Camera CameraArguments::camera(const Scene& scene) const {
   }
   if (fov) camera.fov = *fov;
   return camera;
-}
-
-std::string command_words(const CameraArguments& args) {
-  std::string line;
-  const auto add = [&](const char* flag, const ThreeNumbers& numbers) {
-    if (!is_given(numbers)) return;
-    line += std::string(" ") + flag;
-    for (const std::string& number : numbers) line += ' ' + number;
-  };
-  add("--eye", args.eye);
-  add("--look", args.look);
-  add("--up", args.up);
-  if (args.fov) line += " --fov " + text::shortest(*args.fov);
-  return line;
 }
 
 }  // namespace exactff::flags

@@ -40,9 +40,6 @@ struct SceneArguments {
 // Prints the note on standard error.
 [[nodiscard]] Scene divided_with_note(const Scene& scene, double length);
 
-// The flags again, each preceded by a blank and quoted for a shell. SCENE is not among them.
-[[nodiscard]] std::string command_words(const SceneArguments& args);
-
 // The flag --radiosity.
 struct SolutionArgument {
   std::string file;  // empty: not given
@@ -71,9 +68,6 @@ struct CameraArguments {
   [[nodiscard]] render::Camera camera(const Scene& scene) const;
   [[nodiscard]] render::CameraWishes wishes() const;
 };
-
-// The flags again, each preceded by a blank.
-[[nodiscard]] std::string command_words(const CameraArguments& args);
 
 struct EngineArgument {
   std::string name = "edges";

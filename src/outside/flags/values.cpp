@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "scene/selections.h"
+#include "text/escape.h"
 #include "text/nearest_names.h"
 #include "text/number_text.h"
 #include "text/refuse.h"
@@ -107,6 +108,35 @@ bool names_all(const Scene& scene, const std::vector<std::string>& texts) {
     if (parts.size() > 1 && is_a_name(scene, text)) return false;
     return std::ranges::any_of(parts, [&](const std::string& part) { return means_all(scene, part); });
   });
+}
+
+void add_names(CLI::App& app, const std::string& flag, std::vector<std::string>& names, const std::string& meaning,
+               const std::string& more) {
+  app.add_option(flag, names, meaning + kNamesHelp + more)
+      ->type_name("NAME[:K]")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_threads(CLI::App& app, int& threads) {
+  app.add_option("--threads", threads, "Number of threads (default: all); it does not affect the values")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+}
+
+std::string command_words(const CLI::App& command, const std::vector<std::string>& left_out) {
+  std::string line;
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string flag = option->get_name();
+    if (option->count() == 0 || option->get_positional() || std::ranges::count(left_out, flag) > 0) continue;
+    const bool is_switch = option->get_items_expected_max() == 0, takes_several = option->get_type_size() > 1;
+    if (is_switch || takes_several) line += ' ' + flag;
+    if (is_switch) continue;
+    for (const std::string& value : option->results()) {
+      line += (takes_several ? "" : ' ' + flag) + ' ' + text::shell_word(value);
+    }
+  }
+  return line;
 }
 
 CLI::Option* add_vector_option(CLI::App& app, const std::string& flag, ThreeNumbers& numbers,

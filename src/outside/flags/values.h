@@ -44,6 +44,14 @@ bool take_sky(const Scene& scene, std::vector<std::string>& texts);
 // Whether "all" is among them and means every patch.
 bool names_all(const Scene& scene, const std::vector<std::string>& texts);
 
+// For selections_named(). The help says `meaning`, then how several are named, then `more`.
+void add_names(CLI::App& app, const std::string& flag, std::vector<std::string>& names, const std::string& meaning,
+               const std::string& more = "");
+void add_threads(CLI::App& app, int& threads);
+
+// The flags that are given, each preceded by a blank and quoted for a shell, without those that `left_out` names.
+[[nodiscard]] std::string command_words(const CLI::App& command, const std::vector<std::string>& left_out = {});
+
 // Three numbers as given; empty texts if the flag was not. CLI11 always gives an array all its words, so "-.5" is no
 // flag.
 using ThreeNumbers = std::array<std::string, 3>;
