@@ -61,11 +61,8 @@ void add_all(TextTable& table, const std::string& source, const check::Statistic
 
 void print_distribution(const check::Report& report) {
   TextTable table;
-  table.add_column("error");
-  table.add_column("source");
-  for (const char* title : {"rows", "median", "90 %", "99 %", "99.9 %", "max", "RMS", "bias"}) {
-    table.add_column(title, Align::kRight);
-  }
+  table.add_columns({"error", "source"});
+  table.add_columns({"rows", "median", "90 %", "99 %", "99.9 %", "max", "RMS", "bias"}, Align::kRight);
   const bool several = report.sources.size() > 1;
   add_all(table, several ? "all" : report.sources.front(), report.overall);
   for (std::size_t s = 0; several && s < report.sources.size(); ++s) {
@@ -114,11 +111,8 @@ void print_worst(const check::Report& report, bool of_matrix) {
   std::cout << "Worst rows by " << to_string(report.worst_by) << '\n';
   TextTable table;
   table.add_column("#", Align::kRight);
-  for (const char* title : {of_matrix ? "from" : "receiver", of_matrix ? "to" : "source"}) {
-    table.add_column(title);
-  }
-  for (const char* title : {of_matrix ? "truth" : "exact", "found", "error", "relative", "line"})
-    table.add_column(title, Align::kRight);
+  table.add_columns({of_matrix ? "from" : "receiver", of_matrix ? "to" : "source"});
+  table.add_columns({of_matrix ? "truth" : "exact", "found", "error", "relative", "line"}, Align::kRight);
   for (std::size_t i = 0; i < report.worst.size(); ++i) {
     const check::RowError& row = report.worst[i];
     table.add_row({std::to_string(i + 1), row.receiver, row.source, text::shortest(row.truth),
@@ -131,8 +125,8 @@ void print_worst(const check::Report& report, bool of_matrix) {
 
 void print_verdicts(const check::Report& report) {
   TextTable table;
-  for (const char* title : {"verdict", "criterion", "source"}) table.add_column(title);
-  for (const char* title : {"measured", "limit"}) table.add_column(title, Align::kRight);
+  table.add_columns({"verdict", "criterion", "source"});
+  table.add_columns({"measured", "limit"}, Align::kRight);
   for (const check::Verdict& verdict : report.verdicts) {
     table.add_row({verdict.passed ? "pass" : "FAIL", verdict.criterion, verdict.source.empty() ? "all" : verdict.source,
                    text::short_number(verdict.measured, 6), text::short_number(verdict.limit, 6)});

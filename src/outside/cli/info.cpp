@@ -75,7 +75,7 @@ void print_patches(const Scene& scene, const std::vector<PatchSummary>& rows) {
   table.add_column("patch");
   table.add_column("faces", Align::kRight);
   table.add_column("area", Align::kRight);
-  for (const char* title : {"front", "material", "Kd", "Ke", "emits"}) table.add_column(title);
+  table.add_columns({"front", "material", "Kd", "Ke", "emits"});
   for (const PatchSummary& row : rows) {
     table.add_row({row.name, std::to_string(row.face_count), six_digits(row.area), front_text(row),
                    material_text(scene, row), colour_text(scene, row, &Material::reflectance),
@@ -138,9 +138,8 @@ void print_contacts(const Scene& scene) {
   if (contacts.empty()) return;
   std::cout << "contacts (what is buried neither sends nor receives):\n";
   TextTable table;
-  table.add_column("patch");
-  table.add_column("buried under");
-  for (const char* title : {"area", "share of the patch"}) table.add_column(title, Align::kRight);
+  table.add_columns({"patch", "buried under"});
+  table.add_columns({"area", "share of the patch"}, Align::kRight);
   for (const slips::Contact& one : contacts) {
     table.add_row({scene.name_of(one.patch), scene.name_of(one.under), six_digits(one.area), six_digits(one.share)});
   }

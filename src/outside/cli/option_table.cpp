@@ -116,7 +116,7 @@ OptionRow positional_row(const CLI::Option& option) {
 }
 
 CommandTable command_table(const CLI::App& app) {
-  CommandTable table{app.get_name(), app.get_description(), app.get_footer(), {}, {}};
+  CommandTable table{app.get_name(), {}, {}};
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_group().empty()) continue;
     if (option->get_positional()) table.positionals.push_back(positional_row(*option));

@@ -37,8 +37,6 @@ struct OptionRow {
 
 struct CommandTable {
   std::string name;
-  std::string description;
-  std::string footer;
   std::vector<OptionRow> positionals;
   std::vector<OptionRow> options;
 };

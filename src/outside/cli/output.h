@@ -1,13 +1,11 @@
 // Small helpers of the commands: words for numbers and faces, tables, files that appear complete or not at all.
 #pragma once
 
-#include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 #include <iosfwd>
-#include <ostream>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "exactff/receiver.h"
@@ -19,6 +17,10 @@ namespace exactff::cli {
 
 std::string percent(double share);
 std::string pad(const std::string& text, std::size_t width);
+
+std::string place_text(const Vec3& place);  // "(0, 0.5, 1)"
+// "(0, 0.5, 1), normal (0, 1, 0), on floor"
+std::string receiver_text(const Scene& scene, const Receiver& receiver);
 
 // For a terminal.
 template <class Named>
@@ -55,50 +57,12 @@ enum class Align { kLeft, kRight };
 // stick out instead of widening every row.
 class TextTable {
  public:
-  void add_column(std::string title, Align align = Align::kLeft) {
-    titles_.push_back(std::move(title));
-    aligns_.push_back(align);
-  }
-  // One cell per column.
-  void add_row(std::vector<std::string> cells) {
-    for (std::string& cell : cells) cell = text::printable(cell);
-    rows_.push_back(std::move(cells));
-  }
-
-  void print(std::ostream& out) const {
-    std::vector<std::size_t> widths(titles_.size());
-    widen(widths, titles_);
-    for (const auto& row : rows_) widen(widths, row);
-    print_row(out, widths, titles_);
-    for (const auto& row : rows_) print_row(out, widths, row);
-  }
+  void add_column(std::string title, Align align = Align::kLeft);
+  void add_columns(std::initializer_list<const char*> titles, Align align = Align::kLeft);
+  void add_row(std::vector<std::string> cells);  // one per column
+  void print(std::ostream& out) const;
 
  private:
-  static constexpr std::size_t kWidest = 80;
-
-  // Counts the bytes that begin a UTF-8 character.
-  static std::size_t width(const std::string& text) {
-    return static_cast<std::size_t>(std::count_if(
-        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-  }
-
-  static void widen(std::vector<std::size_t>& widths, const std::vector<std::string>& cells) {
-    for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = std::max(widths[i], std::min(width(cells[i]), kWidest));
-  }
-
-  void print_row(std::ostream& out, const std::vector<std::size_t>& widths,
-                 const std::vector<std::string>& cells) const {
-    std::string line;
-    for (std::size_t i = 0; i < widths.size(); ++i) {
-      const std::size_t taken = width(cells[i]);
-      const std::string blanks(widths[i] > taken ? widths[i] - taken : 0, ' ');
-      line += aligns_[i] == Align::kLeft ? cells[i] + blanks : blanks + cells[i];
-      line += "  ";
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    out << line << '\n';
-  }
-
   std::vector<std::string> titles_;
   std::vector<Align> aligns_;
   std::vector<std::vector<std::string>> rows_;

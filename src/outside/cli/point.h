@@ -81,8 +81,8 @@ struct PointResult {
 // zero, "0.0" an underflow or a derivative whose ball contains 0.
 [[nodiscard]] std::string plain_gradient(const FormFactor& result);
 [[nodiscard]] std::string value_text(const FormFactor& result, int digits);
-// To the precision of --digits, else the nearest double; empty if the ball does not determine it.
-[[nodiscard]] std::optional<std::string> sum_text(const Enclosure& sum, int digits);
+// To the precision of --digits, else the nearest double; "between" its bounds if the ball does not determine it.
+[[nodiscard]] std::string sum_words(const Enclosure& sum, int digits);
 void print_point_table(const PointArguments& args, const Scene& scene, const PointResult& point);
 void print_point_json(const PointArguments& args, const Scene& scene, const PointResult& point);
 void draw_point(const PointArguments& args, const Scene& scene, const PointResult& point);

@@ -25,8 +25,6 @@ std::string plain_derivative(const Derivative& d) {
 
 constexpr std::size_t kMostSharesShown = 20;
 
-std::string vec_text(const Vec3& v) { return fmt::format("({}, {}, {})", shortest(v.x), shortest(v.y), shortest(v.z)); }
-
 void print_stages(const Scene& scene, const PointTerm& one) {
   constexpr std::size_t kMostPlanes = 12;
   for (std::size_t p = 0; p < one.exact.planes.size() && p < kMostPlanes; ++p) {
@@ -125,7 +123,7 @@ void print_vertices(const Scene& scene, const Gradient& gradient) {
   if (gradient.kink) return;
   std::cout << "\n  vertices that move the visible boundary: " << gradient.vertices.size() << '\n';
   for (const VertexDerivative& vertex : gradient.vertices) {
-    std::cout << "    " << vec_text(scene.vertices()[vertex.vertex]);
+    std::cout << "    " << place_text(scene.vertices()[vertex.vertex]);
     if (vertex.is_kink) {
       std::cout << "  none: a kink\n";
       continue;
@@ -136,7 +134,7 @@ void print_vertices(const Scene& scene, const Gradient& gradient) {
   const char* const whose = gradient.frames.size() == 1 ? "the source's plane" : "the plane of a face of the source";
   for (const auto& frame : gradient.frames) {
     std::cout << "  " << whose << " follows";
-    for (const std::uint32_t corner : frame) std::cout << ' ' << vec_text(scene.vertices()[corner]);
+    for (const std::uint32_t corner : frame) std::cout << ' ' << place_text(scene.vertices()[corner]);
     std::cout << '\n';
   }
 }
@@ -166,6 +164,15 @@ void print_source(const PointArguments& args, const Scene& scene, const PointTer
   if (one.exact.gradient) print_arcs(*one.exact.gradient);
 }
 
+// Empty if the ball does not determine it.
+std::optional<std::string> sum_text(const Enclosure& sum, int digits) {
+  if (digits > 0) {
+    if (auto decimals = sum.decimals(digits)) return decimals;
+  }
+  const std::optional<double> nearest = sum.nearest();
+  return nearest ? std::optional(shortest(*nearest)) : std::nullopt;
+}
+
 void print_sum(const PointArguments& args, const std::string& title, const Enclosure& sum) {
   std::cout << title << "\n  form factor  " << sum_text(sum, args.digits).value_or("between the bounds")
             << "\n  enclosure    [" << shortest(sum.lower()) << ", " << shortest(sum.upper()) << "]\n";
@@ -193,10 +200,6 @@ Enclosure missing_to_one(const Enclosure& sum) {
   return missing;
 }
 
-std::string between(const Enclosure& sum) {
-  return fmt::format("between {} and {}", shortest(sum.lower()), shortest(sum.upper()));
-}
-
 // What 1 less the sum is.
 std::string missing_meaning(const Scene& scene, const PointResult& point) {
   if (point.stacked) {
@@ -213,7 +216,7 @@ std::string missing_words(const Enclosure& missing, const std::string& meaning, 
     const double most = std::max(-low, high);
     return most == 0.0 ? "0 (exactly)" : "0, to within " + text::short_number(most, 2);
   }
-  const std::string number = sum_text(missing, digits).value_or(between(missing));
+  const std::string number = sum_words(missing, digits);
   return fmt::format("{}  ({}{})", number, high < 0.0 ? "the sum exceeds 1: " : "", meaning);
 }
 
@@ -221,9 +224,7 @@ std::string missing_words(const Enclosure& missing, const std::string& meaning, 
 void print_patch_table(const PointArguments& args, const Scene& scene, const PointResult& point) {
   const bool visible = args.fraction || args.exact_fraction;
   TextTable table;
-  table.add_column("patch");
-  table.add_column("form factor");
-  table.add_column("status");
+  table.add_columns({"patch", "form factor", "status"});
   if (visible) table.add_column("visible");
   if (args.adaptive) table.add_column("ray-sampled adaptive");
   table.add_column("emits");
@@ -236,13 +237,12 @@ void print_patch_table(const PointArguments& args, const Scene& scene, const Poi
     table.add_row(std::move(cells));
   }
   table.print(std::cout);
-  std::cout << "\nsum           " << sum_text(point.sum, args.digits).value_or(between(point.sum)) << "  (of "
+  std::cout << "\nsum           " << sum_words(point.sum, args.digits) << "  (of "
             << text::counted(point.sources.size(), "patch", "patches") << ", added as balls)\nmissing to 1  "
             << missing_words(missing_to_one(point.sum), missing_meaning(scene, point), args.digits) << '\n';
   if (point.is_mixed()) {
-    std::cout << "emitters      "
-              << sum_text(point.sum_of_emitters, args.digits).value_or(between(point.sum_of_emitters))
-              << "  (the sum over the " << text::counted(point.emitters, "patch", "patches")
+    std::cout << "emitters      " << sum_words(point.sum_of_emitters, args.digits) << "  (the sum over the "
+              << text::counted(point.emitters, "patch", "patches")
               << (point.emitters == 1 ? " that emits)\n" : " that emit)\n");
   }
 }
@@ -391,17 +391,12 @@ std::string value_text(const FormFactor& result, int digits) {
   return plain_value(result);
 }
 
-std::optional<std::string> sum_text(const Enclosure& sum, int digits) {
-  if (digits > 0) {
-    if (auto decimals = sum.decimals(digits)) return decimals;
-  }
-  const std::optional<double> nearest = sum.nearest();
-  return nearest ? std::optional(shortest(*nearest)) : std::nullopt;
+std::string sum_words(const Enclosure& sum, int digits) {
+  return sum_text(sum, digits).value_or(fmt::format("between {} and {}", shortest(sum.lower()), shortest(sum.upper())));
 }
 
 void print_point_table(const PointArguments& args, const Scene& scene, const PointResult& point) {
-  std::cout << "receiver " << vec_text(point.receiver.point) << ", normal " << vec_text(point.receiver.normal);
-  if (!point.receiver.on.empty()) std::cout << ", on " << text::printable(scene.name_of(point.receiver.on));
+  std::cout << "receiver " << text::printable(receiver_text(scene, point.receiver));
   if (const std::optional<FaceId> cover = buried_under(scene, point.receiver)) {
     std::cout << "\nburied under " << shown_name(scene, *cover)
               << ": a closed solid stands on the receiver's face there, so it sees nothing";

@@ -120,7 +120,7 @@ void print_radiosities(const Scene& scene, const Solution& solution, std::size_t
   TextTable table;
   table.add_column("patch");
   if (channels > 1) table.add_column("channel");
-  for (const char* title : {"radiosity", "lower", "upper", "irradiance", "variation"}) table.add_column(title);
+  table.add_columns({"radiosity", "lower", "upper", "irradiance", "variation"});
   const std::size_t count = std::min(solution.patches.size(), kMostPatchesShown);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t c = 0; c < channels; ++c) {
@@ -154,7 +154,7 @@ void print_balance(const Solution& solution, std::size_t channels) {
   std::cout << "\nWhere the light goes, in the unit of Ke times area:\n";
   TextTable table;
   if (channels > 1) table.add_column("channel");
-  for (const char* title : {"emitted", "absorbed", "lost", "(back)", "(open)"}) table.add_column(title);
+  table.add_columns({"emitted", "absorbed", "lost", "(back)", "(open)"});
   for (std::size_t c = 0; c < channels; ++c) {
     const radiosity::Balance& balance = solution.channels[c].balance;
     std::vector<std::string> cells;

@@ -44,9 +44,7 @@ struct StressArguments {
 
 void print_list() {
   TextTable table;
-  table.add_column("family");
-  table.add_column("stiffness");
-  table.add_column("what happens");
+  table.add_columns({"family", "stiffness", "what happens"});
   for (const stress::FamilyInfo& family : stress::families()) {
     table.add_row({std::string(family.name), std::string(family.stiffness), std::string(family.title)});
   }
@@ -57,8 +55,7 @@ void print_family(const stress::FamilyResult& result) {
   std::cout << result.family.title << " (" << result.family.name << ")\n"
             << "stiffness: " << result.family.stiffness << "; truth: " << to_string(result.family.evidence) << '\n';
   TextTable table;
-  for (const char* title : {"stiffness", "form factor", "exact bits", "exact time"})
-    table.add_column(title, Align::kRight);
+  table.add_columns({"stiffness", "form factor", "exact bits", "exact time"}, Align::kRight);
   for (stress::Method method : stress::kMethods) table.add_column(std::string(short_name_of(method)), Align::kRight);
   for (const stress::Row& row : result.rows) {
     const stress::Answer& exact = row.of(stress::Method::kExact);

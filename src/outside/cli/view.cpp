@@ -78,15 +78,6 @@ void print_plain(const ViewArguments& args, const Scene& scene, const WholeView&
   });
 }
 
-std::string place_text(const Vec3& v) {
-  return fmt::format("({}, {}, {})", text::shortest(v.x), text::shortest(v.y), text::shortest(v.z));
-}
-
-std::string receiver_text(const Scene& scene, const Receiver& receiver) {
-  const std::string on = receiver.on.empty() ? "" : ", on " + scene.name_of(receiver.on);
-  return place_text(receiver.point) + ", normal " + place_text(receiver.normal) + on;
-}
-
 // A stacked patch has two values; the form factor is not 0.
 std::string status_text(const SeenPatch& patch) {
   if (!is_stacked(patch)) return std::string(to_string(patch.share.status));
@@ -123,11 +114,8 @@ void print_table(const ViewArguments& args, const Scene& scene, const Receiver& 
   }
   Enclosure fronts;
   for (const SeenPatch& patch : seen.patches) fronts += patch.share.enclosure;
-  std::cout << "\nfronts  "
-            << sum_text(fronts, args.digits)
-                   .value_or(
-                       fmt::format("between {} and {}", text::shortest(fronts.lower()), text::shortest(fronts.upper())))
-            << "  (of " << text::counted(seen.patches.size(), "patch", "patches")
+  std::cout << "\nfronts  " << sum_words(fronts, args.digits) << "  (of "
+            << text::counted(seen.patches.size(), "patch", "patches")
             << "; with (back), backs of faces, and (open), directions that meet nothing: 1)\n";
   if (stacked) {
     std::cout << "stacked: in one plane with the front of another patch, which comes first in the file and has the "

@@ -55,29 +55,21 @@ class Tables {
       gradient_ = table<double>(rows, 3 * columns);
       gradient_status_ = table<std::int8_t>(rows, 3 * columns);
     }
-    columns_ = {value_.mutable_data(),
-                status_.mutable_data(),
-                full ? lower_->mutable_data() : nullptr,
-                full ? upper_->mutable_data() : nullptr,
-                full ? bits_->mutable_data() : nullptr,
-                fraction ? fraction_->mutable_data() : nullptr,
-                gradient ? gradient_->mutable_data() : nullptr,
-                gradient ? gradient_status_->mutable_data() : nullptr};
   }
 
-  void set(std::size_t at, const FormFactor& f) const {
-    columns_.value[at] = f.value;
-    columns_.status[at] = static_cast<std::int8_t>(f.status);
-    if (columns_.fraction != nullptr) columns_.fraction[at] = f.visible_fraction.value_or(0.0);
-    for (std::size_t axis = 0; columns_.gradient != nullptr && axis < 3; ++axis) {
+  void set(std::size_t at, const FormFactor& f) {
+    value_.mutable_data()[at] = f.value;
+    status_.mutable_data()[at] = static_cast<std::int8_t>(f.status);
+    if (fraction_) fraction_->mutable_data()[at] = f.visible_fraction.value_or(0.0);
+    for (std::size_t axis = 0; gradient_ && axis < 3; ++axis) {
       const Derivative& d = f.gradient->position[axis];
-      columns_.gradient[3 * at + axis] = d.value;
-      columns_.gradient_status[3 * at + axis] = static_cast<std::int8_t>(d.status);
+      gradient_->mutable_data()[3 * at + axis] = d.value;
+      gradient_status_->mutable_data()[3 * at + axis] = static_cast<std::int8_t>(d.status);
     }
-    if (columns_.lower == nullptr) return;
-    columns_.lower[at] = f.lower;
-    columns_.upper[at] = f.upper;
-    columns_.bits[at] = f.precision_bits;
+    if (!lower_) return;
+    lower_->mutable_data()[at] = f.lower;
+    upper_->mutable_data()[at] = f.upper;
+    bits_->mutable_data()[at] = f.precision_bits;
   }
 
   // None for what was not requested.
@@ -86,23 +78,11 @@ class Tables {
   }
 
  private:
-  struct Columns {
-    double* value = nullptr;
-    std::int8_t* status = nullptr;
-    double* lower = nullptr;
-    double* upper = nullptr;
-    std::int32_t* bits = nullptr;
-    double* fraction = nullptr;
-    double* gradient = nullptr;
-    std::int8_t* gradient_status = nullptr;
-  };
-
   Table<double> value_;
   Table<std::int8_t> status_;
   std::optional<Table<double>> lower_, upper_, fraction_, gradient_;
   std::optional<Table<std::int8_t>> gradient_status_;
   std::optional<Table<std::int32_t>> bits_;
-  Columns columns_;
 };
 
 // The column of "sky", unless a patch has this name. Taken out of the names.
@@ -128,7 +108,7 @@ py::tuple form_factors_of(const SharedScene& scene, const Numbers& points, const
     }
   }
   const std::size_t columns = list.size() + (sky ? 1 : 0);
-  const Tables out(receivers.count(), columns, full, fraction, gradient);
+  Tables out(receivers.count(), columns, full, fraction, gradient);
   const ExactOptions options{.visible_fraction = fraction, .gradient = gradient, .precision_cap = precision_cap};
   Interrupt interrupt(progress);
   interrupt.run([&] {
