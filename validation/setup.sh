@@ -16,7 +16,7 @@ packages=(
   libopenexr-dev libpng-dev                                     # images
   libjemalloc-dev                                               # the program's allocator
   libeigen3-dev                                                 # linear systems
-  libcli11-dev nlohmann-json3-dev gnuplot-nox                   # program and report
+  libcli11-dev nlohmann-json3-dev libfmt-dev gnuplot-nox        # program and report
   pybind11-dev python3-dev python3-numpy                        # the package for Python
   libgtest-dev patch pkgconf                                    # tests
 )
@@ -50,6 +50,7 @@ exactff is built from these, in these versions or newer ones:
   OpenEXR, libpng    3.1, 1.6
   Eigen, CLI11       3.4, 2.3
   nlohmann-json      3.11
+  fmt                9
   jemalloc           5.3; not needed with -DEXACTFF_JEMALLOC=OFF
   gnuplot            5.4, a program that draws the figures of reports
   Python, NumPy      3.9, 1.24, with pybind11 2.10; not needed with -DEXACTFF_PYTHON=OFF

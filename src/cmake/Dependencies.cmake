@@ -18,6 +18,7 @@ set(CMAKE_MESSAGE_LOG_LEVEL ${exactff_log_level})
 find_package(PNG REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
+find_package(fmt 9 REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 include(ImportLibrary)
 

@@ -81,19 +81,19 @@ endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/scenes DESTINATION ${exactff_examples_dir} COMPONENT program
   FILES_MATCHING PATTERN *.obj PATTERN *.mtl)
 
-# The program writes its manual page and completions itself, from the options that it parses:
-# exactff_install_written(FILE FOLDER ARGUMENT...)
+# The manual page and the completion are made of what the program says about itself:
+# exactff_install_written(FILE FOLDER COMMAND...)
 function(exactff_install_written file folder)
   set(written ${exactff_generated}/${file})
   get_filename_component(folder_of_written ${written} DIRECTORY)
   file(MAKE_DIRECTORY ${folder_of_written})
-  add_custom_command(OUTPUT ${written} COMMAND exactff_program ${ARGN} -o ${written} DEPENDS exactff_program VERBATIM)
+  add_custom_command(OUTPUT ${written} COMMAND ${ARGN} ${written} DEPENDS exactff_program VERBATIM)
   set_property(GLOBAL APPEND PROPERTY exactff_written ${written})
   install(FILES ${written} DESTINATION ${folder} COMPONENT program)
 endfunction()
-exactff_install_written(man/exactff.1 ${CMAKE_INSTALL_MANDIR}/man1 manual)
-exactff_install_written(bash/exactff ${CMAKE_INSTALL_DATADIR}/bash-completion/completions completion bash)
-exactff_install_written(zsh/_exactff ${CMAKE_INSTALL_DATADIR}/zsh/site-functions completion zsh)
-exactff_install_written(fish/exactff.fish ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d completion fish)
+exactff_install_written(man/exactff.1 ${CMAKE_INSTALL_MANDIR}/man1
+  ${PROJECT_SOURCE_DIR}/src/cmake/manual_page.sh $<TARGET_FILE:exactff_program>)
+exactff_install_written(bash/exactff ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+  exactff_program completion bash -o)
 get_property(exactff_written GLOBAL PROPERTY exactff_written)
 add_custom_target(exactff_written ALL DEPENDS ${exactff_written})

@@ -32,8 +32,7 @@ mv "$work/stage/opt/first" "$prefix"
 
 examples=share/exactff/examples
 for file in bin/exactff include/exactff/exact.h include/exactff/version.h share/man/man1/exactff.1 \
-  share/bash-completion/completions/exactff share/zsh/site-functions/_exactff \
-  share/fish/vendor_completions.d/exactff.fish share/doc/exactff/LICENSE \
+  share/bash-completion/completions/exactff share/doc/exactff/LICENSE \
   $examples/scenes/{cornell_box,blinds_room}.{obj,mtl} $examples/project/{CMakeLists.txt,main.cpp,room.obj}; do
   [ -s "$prefix/$file" ] || fail "$file is not installed"
 done
@@ -45,6 +44,9 @@ programs=$(find "$prefix" -type f -perm /111 ! -name '*.so*' -printf '%P\n')
 quietly "running the program" "$prefix/bin/exactff" point "$prefix/$examples/scenes/cornell_box.obj" \
   --at 278 0 279.6 --normal 0 1 0 --on floor --source light
 quietly "reading the completion" bash -n "$prefix/share/bash-completion/completions/exactff"
+for command in $("$prefix/bin/exactff" help | sed '1,/^Subcommands:/d' | awk '{ print $1 }'); do
+  grep -q "^\.SH exactff $command\$" "$prefix/share/man/man1/exactff.1" || fail "the manual page lacks $command"
+done
 if command -v groff > /dev/null; then
   quietly "reading the manual page" groff -man -Tutf8 -ww -z "$prefix/share/man/man1/exactff.1"
   [ ! -s "$work/log" ] || { cat "$work/log"; fail "the manual page has faults"; }

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "cli/long_run.h"
-#include "flags/study_file.h"
+#include "cli/process.h"
+#include "flags/comparison.h"
 #include "fuzz/complaints.h"
 #include "support/program.h"
 

@@ -389,14 +389,8 @@ std::vector<Words> odd_commands(const cli::ProgramTable& program, const OddInput
   const std::string name =
       random.one_in(6) ? program.commands[random.below(program.commands.size())].name : one_of(random, often);
   if (random.one_in(150))
-    return {one_of<Words>(random, {{"completion", "bash"},
-                                   {"completion", "fish"},
-                                   {"manual"},
-                                   {"--help"},
-                                   {},
-                                   {name, "--help"},
-                                   {"help"},
-                                   {"help", name}})};
+    return {one_of<Words>(
+        random, {{"completion", "bash"}, {"completion"}, {"--help"}, {}, {name, "--help"}, {"help"}, {"help", name}})};
   const Words command = CommandWriter(table_of(program, name), inputs, random).write();
   std::vector<Words> steps = preparation(command, inputs, random);
   steps.push_back(command);

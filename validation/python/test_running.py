@@ -118,7 +118,7 @@ def test_what_a_progress_function_raises_ends_the_work():
 
 def test_progress_is_told_from_the_calling_thread(capsys, monkeypatch):
     pytest.importorskip("tqdm")
-    monkeypatch.setattr("exactff._progress._PATIENCE", 0.0)
+    monkeypatch.setattr("exactff._arguments._PATIENCE", 0.0)
     told = []
     work(progress=lambda done, total: told.append((done, total, threading.get_ident())))
     assert told[-1] == (3600, 3600, threading.get_ident())

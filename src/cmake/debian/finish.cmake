@@ -16,9 +16,6 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   file(GLOB pages ${root}/share/man/man1/*.1)
   execute_process(COMMAND gzip -9nf ${documents}/changelog ${pages} COMMAND_ERROR_IS_FATAL ANY)
 
-  if(EXISTS ${root}/share/zsh/site-functions)
-    file(RENAME ${root}/share/zsh/site-functions ${root}/share/zsh/vendor-completions)
-  endif()
   # The Python of Debian looks for packages elsewhere than that of other prefixes.
   file(GLOB python_package ${root}/lib/python3.*/site-packages/exactff)
   if(python_package)

@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "check/report.h"
-#include "cli/text_table.h"
+#include "cli/output.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 

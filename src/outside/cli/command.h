@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <memory>
+#include <string>
 #include <vector>
 
 namespace exactff::cli {
@@ -28,9 +30,15 @@ Command add_stress(CLI::App& app);
 Command add_convert(CLI::App& app);
 Command add_help(CLI::App& app);
 Command add_completion(CLI::App& app);
-Command add_manual(CLI::App& app);
 
 // All commands, in the order of the help.
 std::vector<Command> add_commands(CLI::App& app);
+
+// For App::formatter: forms the texts of --help from the option tables. Set it before commands are added, because they
+// inherit it.
+[[nodiscard]] std::shared_ptr<CLI::Formatter> help_formatter();
+
+// Throws InputError if there is no such command. `app` must have all commands: main() adds them first.
+void require_command(const CLI::App& app, const std::string& name);
 
 }  // namespace exactff::cli

@@ -10,15 +10,15 @@
 #include "cli/command.h"
 #include "cli/further_files.h"
 #include "cli/kept_work.h"
-#include "cli/long_run.h"
 #include "cli/output.h"
+#include "cli/process.h"
 #include "exactff/slips.h"
 #include "exactff/study.h"
 #include "files/file.h"
 #include "flags/comparison.h"
 #include "flags/file_options.h"
-#include "flags/sources.h"
-#include "flags/study_file.h"
+#include "flags/receivers.h"
+#include "flags/values.h"
 #include "report/plan.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -69,12 +69,14 @@ struct CompareArguments {
 std::string command_line(const CompareArguments& args) {
   std::string line = "exactff compare";
   if (const std::string& path = args.scene.scene.path; !path.empty()) line += ' ' + text::shell_word(path);
-  line += flags::command_words(args.scene);
-  for (const std::string& name : args.experiments) line += " --experiment " + text::shell_word(name);
-  if (args.abridged) line += " --abridged";
-  if (args.threads > 0) line += " --threads " + std::to_string(args.threads);
-  if (!args.further.vtk.empty()) line += " --vtk " + text::shell_word(args.further.vtk);
+  line += flags::command_words(*args.scene.scene.command, {"--resume", "--force", "--output"});
   return line + " -o " + text::shell_word(args.folder);
+}
+
+// Those that describe a scene.
+std::string scene_flags(const CompareArguments& args) {
+  return flags::command_words(*args.scene.scene.command,
+                              {"--experiment", "--abridged", "--threads", "--output", "--vtk", "--resume", "--force"});
 }
 
 // A finished folder holds hours of work, as a truth file does. Checked before anything that takes time.
@@ -84,11 +86,12 @@ void require_free(const CompareArguments& args) {
                  "name a folder, or ./- for one of that name");
   }
   if (args.force || args.resume || !report::has_report(args.folder)) return;
-  throw InputError({.file = args.folder,
-                    .what = "holds a finished report",
-                    .why = "a finished result is not replaced by accident",
-                    .suggestion = "name another folder, keep it with --resume if it is of the same request, or replace "
-                                  "it with --force"});
+  throw InputError(
+      {.file = args.folder,
+       .what = "holds a finished report",
+       .why = "a finished result is not replaced by accident",
+       .suggestion =
+           "name another folder, keep it with --resume if it is of the same request, or replace it with --force"});
 }
 
 void check_outputs(const CompareArguments& args) {
@@ -132,7 +135,7 @@ report::Plan plan_of(const CompareArguments& args) {
       text::refuse("SCENE is required", "there is nothing to compare",
                    "name a scene, a .study file or an --experiment");
     }
-    const std::string flags = flags::command_words(args.scene);
+    const std::string flags = scene_flags(args);
     if (!flags.empty()) {
       text::refuse("flags of a scene are given without a scene:" + flags, "an experiment has scenes of its own",
                    "name the scene, or remove the flags");
@@ -140,7 +143,7 @@ report::Plan plan_of(const CompareArguments& args) {
     plan.title = "Experiments";
     plan.effort = effort;
   } else if (flags::is_study_file(path)) {
-    const std::string flags = flags::command_words(args.scene);
+    const std::string flags = scene_flags(args);
     if (!flags.empty()) {
       text::refuse("flags of a scene are given with a study file:" + flags,
                    "a study file has several scenes, each with its own flags",
@@ -250,8 +253,7 @@ Command add_compare(CLI::App& app) {
   command->get_option("SCENE")
       ->description(
           "Scene file (OBJ, PLY, STL, OFF, View3D), @MODEL for a generated scene, or a .study file with several "
-          "scenes; "
-          "not needed with --experiment")
+          "scenes; not needed with --experiment")
       ->required(false);
   command
       ->add_option("--experiment", args->experiments,
@@ -261,9 +263,7 @@ Command add_compare(CLI::App& app) {
       ->take_all();
   command->add_flag("--abridged", args->abridged,
                     "Run a short version: grids of at most 12x12, fewer settings and receivers, short experiments");
-  command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
+  flags::add_threads(*command, args->threads);
   command->add_option("-o,--output", args->folder, "Folder for the report and the tables")
       ->required()
       ->type_name("DIR")

@@ -40,32 +40,28 @@ void require_writable(const files::NamedFile& output, bool may_replace) {
 }  // namespace
 
 void FurtherFiles::add_numpy_to(CLI::App& app) {
-  app.add_option("--npy", npy,
-                 "Also write the values as a NumPy array: float64, a row for each receiver and a column for each "
-                 "source; NaN where not certified")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kNpy));
-  app.add_option("--npz", npz,
-                 "Also write NumPy arrays in one small file: points, normals (unit vectors), on (index into faces), "
-                 "faces, sources, F as --npy")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kNpz));
+  flags::add_written(app, "--npy", npy,
+                     "Also write the values as a NumPy array: float64, a row for each receiver and a column for each "
+                     "source; NaN where not certified",
+                     flags::Format::kNpy);
+  flags::add_written(app, "--npz", npz,
+                     "Also write NumPy arrays in one small file: points, normals (unit vectors), on (index into "
+                     "faces), faces, sources, F as --npy",
+                     flags::Format::kNpz);
 }
 
 void FurtherFiles::add_vtk_to(CLI::App& app) {
-  app.add_option("--vtk", vtk,
-                 "Also write the values at the receivers' cells for ParaView, as NAME.vtp or NAME.vtu, and the scene "
-                 "as NAME_scene.vtp or .vtu")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kVtk, flags::Beside::kScene));
+  flags::add_written(app, "--vtk", vtk,
+                     "Also write the values at the receivers' cells for ParaView, as NAME.vtp or NAME.vtu, and the "
+                     "scene as NAME_scene.vtp or .vtu",
+                     flags::Format::kVtk, flags::Beside::kScene);
 }
 
 void FurtherFiles::add_exr_to(CLI::App& app) {
-  app.add_option("--exr", exr,
-                 "Also write the totals as an OpenEXR image, in the pixels that --receivers FILE.exr has; NaN where "
-                 "there is no value")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kExr));
+  flags::add_written(app, "--exr", exr,
+                     "Also write the totals as an OpenEXR image, in the pixels that --receivers FILE.exr has; NaN "
+                     "where there is no value",
+                     flags::Format::kExr);
 }
 
 std::vector<std::string> FurtherFiles::flags() const {

@@ -1,4 +1,6 @@
 // exactff info: lists the contents of a scene, so that the user knows what to pass to --source and --on.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,14 +9,14 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
-#include "cli/long_run.h"
 #include "cli/output.h"
-#include "cli/text_table.h"
+#include "cli/process.h"
 #include "exactff/models.h"
 #include "exactff/scene.h"
 #include "exactff/slips.h"
 #include "exactff/version.h"
 #include "flags/scene.h"
+#include "flags/values.h"
 #include "text/escape.h"
 #include "text/json_document.h"
 
@@ -24,19 +26,15 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string six_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value == 0.0 ? 0.0 : value);
-  return text;
-}
+std::string six_digits(double value) { return fmt::format("{:.6g}", value == 0.0 ? 0.0 : value); }
 
 std::string short_colour(const Rgb& c) {
   if (c.r == c.g && c.g == c.b) return six_digits(c.r);
-  return six_digits(c.r) + " " + six_digits(c.g) + " " + six_digits(c.b);
+  return fmt::format("{} {} {}", six_digits(c.r), six_digits(c.g), six_digits(c.b));
 }
 
 std::string counted(std::size_t count, const std::string& one, const std::string& many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many);
+  return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
 std::vector<FaceId> faces_of_shape(const Scene& scene, FaceShape shape) {
@@ -53,7 +51,7 @@ std::string front_text(const PatchSummary& row) {
   if (row.area == 0.0) return "-";
   if (!row.front) return "mixed";
   const auto rounded = [](double c) { return six_digits(std::round(c * 1e4) / 1e4); };
-  return "(" + rounded(row.front->x) + ", " + rounded(row.front->y) + ", " + rounded(row.front->z) + ")";
+  return fmt::format("({}, {}, {})", rounded(row.front->x), rounded(row.front->y), rounded(row.front->z));
 }
 
 std::string material_text(const Scene& scene, const PatchSummary& row) {
@@ -62,7 +60,7 @@ std::string material_text(const Scene& scene, const PatchSummary& row) {
   for (std::size_t i = 0; i < std::min(kShown, row.materials.size()); ++i) {
     text += (i > 0 ? ", " : "") + scene.material(row.materials[i]).name;
   }
-  return row.materials.size() > kShown ? text + " +" + std::to_string(row.materials.size() - kShown) : text;
+  return row.materials.size() > kShown ? fmt::format("{} +{}", text, row.materials.size() - kShown) : text;
 }
 
 std::string colour_text(const Scene& scene, const PatchSummary& row, Rgb Material::*colour) {
@@ -77,7 +75,7 @@ void print_patches(const Scene& scene, const std::vector<PatchSummary>& rows) {
   table.add_column("patch");
   table.add_column("faces", Align::kRight);
   table.add_column("area", Align::kRight);
-  for (const char* title : {"front", "material", "Kd", "Ke", "emits"}) table.add_column(title);
+  table.add_columns({"front", "material", "Kd", "Ke", "emits"});
   for (const PatchSummary& row : rows) {
     table.add_row({row.name, std::to_string(row.face_count), six_digits(row.area), front_text(row),
                    material_text(scene, row), colour_text(scene, row, &Material::reflectance),
@@ -123,8 +121,9 @@ std::vector<std::string> numbered_names(const Scene& scene, FaceShape shape) {
 void print_faces(const Scene& scene) {
   std::vector<std::string> other;
   for (const FaceId face : faces_of_shape(scene, FaceShape::kTriangulated)) {
-    other.push_back(numbered_name(scene, face) + " (off by " + six_digits(scene.face(face).out_of_plane) + ", " +
-                    counted(scene.face(face).piece_count, "triangle", "triangles") + ")");
+    other.push_back(fmt::format("{} (off by {}, {})", numbered_name(scene, face),
+                                six_digits(scene.face(face).out_of_plane),
+                                counted(scene.face(face).piece_count, "triangle", "triangles")));
   }
   print_list("not exactly planar, cut into triangles (distance from the plane / diameter)", other);
   print_list("zero area, ignored", numbered_names(scene, FaceShape::kZeroArea));
@@ -139,9 +138,8 @@ void print_contacts(const Scene& scene) {
   if (contacts.empty()) return;
   std::cout << "contacts (what is buried neither sends nor receives):\n";
   TextTable table;
-  table.add_column("patch");
-  table.add_column("buried under");
-  for (const char* title : {"area", "share of the patch"}) table.add_column(title, Align::kRight);
+  table.add_columns({"patch", "buried under"});
+  table.add_columns({"area", "share of the patch"}, Align::kRight);
   for (const slips::Contact& one : contacts) {
     table.add_row({scene.name_of(one.patch), scene.name_of(one.under), six_digits(one.area), six_digits(one.share)});
   }
@@ -157,8 +155,9 @@ void print_findings(const std::vector<slips::Finding>& findings) {
 void print_suggestion(const Scene& scene, const flags::SceneArguments& arguments) {
   const std::optional<slips::FirstTry> first = slips::first_try(scene);
   if (!first) return;
-  std::cout << "next: exactff compare " << text::shell_word(arguments.path) << flags::command_words(arguments)
-            << " --on " << text::shell_word(scene.name_of(first->on)) << " --source "
+  std::cout << "next: exactff compare " << text::shell_word(arguments.path)
+            << flags::command_words(*arguments.command, {"--json"}) << " --on "
+            << text::shell_word(scene.name_of(first->on)) << " --source "
             << text::shell_word(scene.name_of(first->source))
             << " --grid 16x16 -o DIR (--source and --on take a patch from the table, or PATCH:k for its k-th face)\n";
 }

@@ -6,8 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "cli/exit_code.h"
-#include "cli/launch.h"
+#include "cli/process.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/refuse.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "cli/long_run.h"
+#include "cli/process.h"
 #include "exactff/jobs.h"
 #include "jobs/team.h"
 

@@ -12,18 +12,15 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/exit_code.h"
 #include "cli/further_files.h"
 #include "cli/kept_work.h"
-#include "cli/long_run.h"
 #include "cli/output.h"
-#include "cli/speed_advice.h"
-#include "cli/text_table.h"
+#include "cli/process.h"
 #include "cli/view_factor_words.h"
 #include "exactff/version.h"
 #include "flags/file_options.h"
-#include "flags/lists.h"
 #include "flags/scene.h"
+#include "flags/values.h"
 #include "matrix/row_facts.h"
 #include "matrix/row_on_faces.h"
 #include "matrix/team.h"
@@ -375,26 +372,21 @@ int run(const MatrixArguments& args) {
 }
 
 void add_outputs(CLI::App& command, MatrixArguments& args) {
-  command.add_option("-o,--output", args.csv, "Write a CSV file")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kCsv, flags::Beside::kJournal));
-  command.add_option("--npz", args.npz, "Write the arrays of a sparse matrix for NumPy and SciPy")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kNpz));
-  command.add_option("--view3d", args.view3d, "Write the matrix as View3D does, with six decimals")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kView3d));
+  flags::add_written(command, "-o,--output", args.csv, "Write a CSV file", flags::Format::kCsv,
+                     flags::Beside::kJournal);
+  flags::add_written(command, "--npz", args.npz, "Write the arrays of a sparse matrix for NumPy and SciPy",
+                     flags::Format::kNpz);
+  flags::add_written(command, "--view3d", args.view3d, "Write the matrix as View3D does, with six decimals",
+                     flags::Format::kView3d);
   CLI::Option* energyplus =
-      command.add_option("--energyplus", args.energyplus, "Write view factors for the input file of EnergyPlus")
-          ->type_name("FILE")
-          ->check(flags::is_written(flags::Format::kEnergyPlus));
+      flags::add_written(command, "--energyplus", args.energyplus,
+                         "Write view factors for the input file of EnergyPlus", flags::Format::kEnergyPlus);
   command.add_option("--zone", args.zone, "Name of EnergyPlus' zone")
       ->type_name("TEXT")
       ->needs(energyplus)
       ->capture_default_str();
-  command.add_option("--vtk", args.vtk, "Write the one row that --from names, on the scene, as NAME.vtp or NAME.vtu")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kVtk));
+  flags::add_written(command, "--vtk", args.vtk,
+                     "Write the one row that --from names, on the scene, as NAME.vtp or NAME.vtu", flags::Format::kVtk);
   command.add_option("--shard", args.shard, "Compute only part I of N, for exactff merge: 1/4 is the first of four")
       ->type_name("I/N");
   CLI::Option* resume = command.add_flag("--resume", args.resume, "Continue an interrupted run, if there is one");

@@ -9,7 +9,7 @@
 
 #include "cli/command.h"
 #include "cli/further_files.h"
-#include "cli/long_run.h"
+#include "cli/process.h"
 #include "cli/truth_summary.h"
 #include "exactff/matrix.h"
 #include "exactff/truth.h"
@@ -97,15 +97,10 @@ int run(const MergeArguments& args) {
 Command add_merge(CLI::App& app) {
   auto args = std::make_shared<MergeArguments>();
   CLI::App* command = app.add_subcommand("merge", "Join the shards of a truth file or of a matrix");
-  command->add_option("SHARD", args->shards, "Files written by exactff truth --shard or exactff matrix --shard")
-      ->required()
-      ->type_name("FILE")
-      ->check(flags::is_read());
+  flags::add_read(*command, "SHARD", args->shards, "Files written by exactff truth --shard or exactff matrix --shard")
+      ->required();
   command->add_flag("--force", args->force, "Replace an existing file");
-  command->add_option("-o,--output", args->file, "CSV file to write")
-      ->required()
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kCsv));
+  flags::add_written(*command, "-o,--output", args->file, "CSV file to write", flags::Format::kCsv)->required();
   args->further.add_numpy_to(*command);
   command->footer(kMergeFooter);
   return {command, [args] { return run(*args); }};

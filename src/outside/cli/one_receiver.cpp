@@ -67,10 +67,9 @@ void OneReceiver::add_to(CLI::App& app) {
   flags::add_vector_option(app, "--at", at, "The receiver's point")->required();
   flags::add_vector_option(app, "--normal", normal, "The receiver's normal, of any length except zero", "NX NY NZ")
       ->required();
-  app.add_option(
-         "--on", on,
-         "The receiver lies on this face, or on several (floor:1+2); faces exactly in their planes then neither "
-         "occlude nor illuminate it; auto or auto:DISTANCE finds them")
+  app.add_option("--on", on,
+                 "The receiver lies on this face, or on several (floor:1+2); faces exactly in their planes then "
+                 "neither occlude nor illuminate it; auto or auto:DISTANCE finds them")
       ->type_name("NAME[:K]");
 }
 

@@ -8,7 +8,7 @@
 
 #include "exactff/receiver.h"
 #include "exactff/view.h"
-#include "flags/vector.h"
+#include "flags/values.h"
 
 namespace exactff::cli {
 

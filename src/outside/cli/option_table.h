@@ -1,9 +1,10 @@
-// CLI11's description of the program as plain tables. The help, the manual page and the completions are all generated
-// from these tables, so that they always agree with the options that are parsed.
+// CLI11's description of the program as plain tables. The help, the completion and the words for misused flags are
+// generated from these tables, so that they always agree with the options that are parsed.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,6 @@ struct OptionRow {
 
 struct CommandTable {
   std::string name;
-  std::string description;
-  std::string footer;
   std::vector<OptionRow> positionals;
   std::vector<OptionRow> options;
 };
@@ -50,5 +49,14 @@ struct ProgramTable {
 // Hidden options and commands (those with an empty group) are left out.
 [[nodiscard]] ProgramTable program_table(const CLI::App& app);
 [[nodiscard]] OptionRow option_row(const CLI::Option& option);
+
+// --- words for command lines that CLI11 refuses or would misread ---
+
+// Before parsing: throws InputError if a flag that takes a value is followed by another flag, which CLI11 would take
+// for the value, or by nothing. `words`: what follows the name of the program, beginning with a command.
+void refuse_flags_without_values(const CLI::App& app, std::span<const std::string> words);
+
+// Throws InputError with these faults of the command line, in its order; returns if there is none.
+void refuse_misused_flags(const CLI::App& app, std::span<const std::string> words);
 
 }  // namespace exactff::cli

@@ -1,14 +1,16 @@
 #include "cli/output.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <system_error>
-#include <vector>
 
-#include "cli/long_run.h"
+#include "cli/process.h"
 #include "files/file.h"
 #include "page/output_folder.h"
 #include "text/phrases.h"
@@ -19,6 +21,15 @@ namespace exactff::cli {
 namespace fs = std::filesystem;
 
 std::string percent(double share) { return text::rounded(100.0 * share, 4) + " %"; }
+
+std::string place_text(const Vec3& place) {
+  return fmt::format("({}, {}, {})", text::shortest(place.x), text::shortest(place.y), text::shortest(place.z));
+}
+
+std::string receiver_text(const Scene& scene, const Receiver& receiver) {
+  const std::string on = receiver.on.empty() ? "" : ", on " + scene.name_of(receiver.on);
+  return place_text(receiver.point) + ", normal " + place_text(receiver.normal) + on;
+}
 
 std::string pad(const std::string& text, std::size_t width) {
   return text + std::string(text.size() < width ? width - text.size() : 1, ' ');
@@ -127,6 +138,46 @@ void print_warnings(std::span<const Problem> warnings) {
   if (warnings.size() > kPrinted) {
     std::cerr << "warning: ... and " << (at_least ? "more than " : "") << warnings.size() - kPrinted << " more\n";
   }
+}
+
+void TextTable::add_column(std::string title, Align align) {
+  titles_.push_back(std::move(title));
+  aligns_.push_back(align);
+}
+
+void TextTable::add_columns(std::initializer_list<const char*> titles, Align align) {
+  for (const char* title : titles) add_column(title, align);
+}
+
+void TextTable::add_row(std::vector<std::string> cells) {
+  for (std::string& cell : cells) cell = text::printable(cell);
+  rows_.push_back(std::move(cells));
+}
+
+void TextTable::print(std::ostream& out) const {
+  constexpr std::size_t kWidest = 80;
+  const auto width = [](const std::string& cell) {  // counts the bytes that begin a UTF-8 character
+    return static_cast<std::size_t>(
+        std::ranges::count_if(cell, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+  };
+  std::vector<std::size_t> widths(titles_.size());
+  const auto for_each_row = [&](const auto& visit) {
+    visit(titles_);
+    for (const auto& row : rows_) visit(row);
+  };
+  for_each_row([&](const std::vector<std::string>& cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], std::min(width(cells[i]), kWidest));
+  });
+  for_each_row([&](const std::vector<std::string>& cells) {
+    std::string line;
+    for (std::size_t i = 0; i < widths.size(); ++i) {
+      const std::size_t taken = width(cells[i]);
+      const std::string blanks(widths[i] > taken ? widths[i] - taken : 0, ' ');
+      line += (aligns_[i] == Align::kLeft ? cells[i] + blanks : blanks + cells[i]) + "  ";
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    out << line << '\n';
+  });
 }
 
 }  // namespace exactff::cli

@@ -1,10 +1,12 @@
-// Small helpers of the commands: words for numbers and faces, files that appear complete or not at all.
+// Small helpers of the commands: words for numbers and faces, tables, files that appear complete or not at all.
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <iosfwd>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
@@ -15,6 +17,10 @@ namespace exactff::cli {
 
 std::string percent(double share);
 std::string pad(const std::string& text, std::size_t width);
+
+std::string place_text(const Vec3& place);  // "(0, 0.5, 1)"
+// "(0, 0.5, 1), normal (0, 1, 0), on floor"
+std::string receiver_text(const Scene& scene, const Receiver& receiver);
 
 // For a terminal.
 template <class Named>
@@ -44,5 +50,22 @@ void print_hidden_faces(const Scene& scene);
 
 // Throws InputError unless a result can be written to `folder` (page/output_folder.h).
 void check_output_folder(const std::filesystem::path& folder);
+
+enum class Align { kLeft, kRight };
+
+// A table to be read by people: columns as wide as their widest cell, numbers aligned right. Cells wider than a limit
+// stick out instead of widening every row.
+class TextTable {
+ public:
+  void add_column(std::string title, Align align = Align::kLeft);
+  void add_columns(std::initializer_list<const char*> titles, Align align = Align::kLeft);
+  void add_row(std::vector<std::string> cells);  // one per column
+  void print(std::ostream& out) const;
+
+ private:
+  std::vector<std::string> titles_;
+  std::vector<Align> aligns_;
+  std::vector<std::vector<std::string>> rows_;
+};
 
 }  // namespace exactff::cli

@@ -1,23 +1,213 @@
 // exactff point: the exact form factor from one receiver to one source, or to all.
 #include "cli/point.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iostream>
+#include <utility>
 
 #include "cli/command.h"
-#include "cli/exit_code.h"
 #include "cli/output.h"
+#include "cli/process.h"
 #include "exactff/slips.h"
 #include "exactff/study.h"
 #include "flags/file_options.h"
-#include "flags/vector.h"
+#include "flags/receivers.h"
+#include "flags/values.h"
+#include "scene/selections.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
 namespace exactff::cli {
-
 namespace {
+
+// --- values ---
+
+constexpr std::size_t kMostSharesComputed = 200;
+
+std::vector<Selection> make_sources(const PointArguments& args, const Scene& scene) {
+  std::vector<Selection> sources = flags::sources_of({args.sources}, scene);
+  if (sources.empty()) sources = scene.emitters();
+  if (sources.empty()) {
+    throw InputError({.file = args.scene.path,
+                      .what = "no patch of the scene emits (Ke is 0 everywhere)",
+                      .why = "without --source, every emitting patch is a source",
+                      .suggestion = "name a source with --source NAME; `exactff info` lists the names"});
+  }
+  if (args.plain && sources.size() != 1) {
+    throw InputError({.file = {},
+                      .what = fmt::format("--plain prints one value, but there are {} sources", sources.size()),
+                      .why = {},
+                      .suggestion = "name one with --source NAME, or use --json"});
+  }
+  return sources;
+}
+
+Rgb make_reflectance(const PointArguments& args, const Scene& scene, const Receiver& receiver) {
+  if (args.reflectance.empty()) return scene.receiver_reflectance(receiver.on);
+  return {args.reflectance.front(), args.reflectance[args.reflectance.size() / 2], args.reflectance.back()};
+}
+
+void add_shares(const Scene& scene, const Receiver& receiver, const ExactSource& source, PointTerm& result) {
+  const std::vector<FaceId> none;
+  ExactOptions options{.only_occluders = &none};
+  const double open = exact_form_factor(scene, receiver, source, options).value;
+  result.unoccluded = open;
+  if (open == 0.0) return;  // an underflow: there is nothing to compare with
+  for (const FaceId face : result.exact.cutters) {
+    if (result.shares.size() == kMostSharesComputed) break;
+    const std::vector<FaceId> only{face};
+    options.only_occluders = &only;
+    result.shares.push_back({face, 1.0 - exact_form_factor(scene, receiver, source, options).value / open});
+  }
+  std::stable_sort(result.shares.begin(), result.shares.end(),
+                   [](const PointTerm::Share& a, const PointTerm::Share& b) { return a.alone > b.alone; });
+}
+
+AdaptiveOptions adaptive_options(const PointArguments& args) {
+  AdaptiveOptions options = args.adaptive_options;
+  options.pattern = *pattern_named(args.pattern);
+  options.variant = *variant_named(args.variant);
+  options.record_leaves = !args.svg.empty();  // for the drawing only: there can be millions
+  options.most_recorded_leaves = kMostDrawnLeaves;
+  options.most_leaves = kMostPointLeaves;
+  return options;
+}
+
+// Whether one sweep finds all that is printed, in less time than one patch after another. It says nothing of how a
+// value was found, and nothing about transparent patches.
+bool one_sweep_will_do(const PointArguments& args, const Scene& scene, const std::vector<Selection>& sources) {
+  constexpr std::size_t kFewestFaces = 400;
+  const bool shows_more =
+      args.fraction || args.gradient || args.exact_fraction || args.explain || args.json || !args.svg.empty();
+  const bool every_patch = flags::names_all(scene, args.sources) &&
+                           std::ranges::none_of(sources, [](const Selection& s) { return s.face.has_value(); });
+  return every_patch && !shows_more && scene.faces().size() >= kFewestFaces && scene.transparent().empty() &&
+         args.engine.engine() == Engine::kEdges;
+}
+
+// The form factor of a patch in the whole view, which lists those above 0.
+FormFactor factor_in_view(const WholeView& seen, const Selection& source) {
+  const auto found = std::ranges::lower_bound(seen.patches, source.patch, {}, &SeenPatch::patch);
+  if (found == seen.patches.end() || found->patch != source.patch) return {};
+  return as_form_factor(found->form_factor);
+}
+
+// Whether the sum of all form factors counts a part of the view twice.
+bool has_stacked(const PointArguments& args, const Scene& scene, const PointResult& point) {
+  const auto is_stacked = [](const SeenPatch& patch) { return patch.share.value != patch.form_factor.value; };
+  const auto some = [&](const WholeView& seen) { return std::ranges::any_of(seen.patches, is_stacked); };
+  return some(point.seen ? *point.seen : view(scene, point.receiver, {.precision_cap = args.precision_cap}));
+}
+
+std::optional<Vec3> direction_of(const PointArguments& args) {
+  return flags::is_given(args.along) ? std::optional(flags::vector_of(args.along, "--along")) : std::nullopt;
+}
+
+FormFactor exact_value(const PointArguments& args, const Scene& scene, const PointResult& point,
+                       const ExactSource& source) {
+  if (point.seen) return factor_in_view(*point.seen, source.selection());
+  const ExactOptions options{.engine = args.engine.engine(),
+                             .visible_fraction = args.fraction || args.exact_fraction,
+                             .exact_fraction = args.exact_fraction,
+                             .list_cutters = args.explain || !args.svg.empty(),
+                             .gradient = args.gradient,
+                             .list_arcs = args.gradient && args.explain,
+                             .vertices = args.vertices,
+                             .along = direction_of(args),
+                             .digits = args.digits,
+                             .precision_cap = args.precision_cap};
+  return exact_form_factor(scene, point.receiver, source, options);
+}
+
+PointTerm compute_source(const PointArguments& args, const Scene& scene, const PointResult& point,
+                         const ExactSource& source, const std::optional<AdaptiveSolver>& sampler) {
+  PointTerm result{.source = source.selection(), .emits = emits(scene, source.selection())};
+  result.exact = exact_value(args, scene, point, source);
+  const Rgb b = scene.source_radiosity(result.source);
+  const Rgb& rho = point.reflectance;
+  result.largest_rho_b = std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b});
+  const double f = result.exact.value;
+  result.radiosity = {rho.r * b.r * f, rho.g * b.g * f, rho.b * b.b * f};
+  if (args.explain) add_shares(scene, point.receiver, source, result);
+  if (sampler) {
+    result.adaptive = sampler->form_factor(point.receiver, result.source, result.largest_rho_b, adaptive_options(args));
+  }
+  return result;
+}
+
+void add(Rgb& sum, const Rgb& part) { sum = {sum.r + part.r, sum.g + part.g, sum.b + part.b}; }
+
+// Sources that emit nothing count with a radiosity of 1, which cannot be added to the radiosity of lamps.
+void add_up(PointResult& result) {
+  for (const PointTerm& one : result.sources) {
+    result.sum += one.exact.enclosure;
+    if (one.emits) {
+      ++result.emitters;
+      result.sum_of_emitters += one.exact.enclosure;
+      add(result.radiosity, one.radiosity);
+    } else {
+      add(result.radiosity_of_others, one.radiosity);
+    }
+  }
+  if (result.emitters == 0) std::swap(result.radiosity, result.radiosity_of_others);
+}
+
+void require_one(const std::vector<Selection>& sources, const std::string& picture) {
+  if (sources.size() == 1) return;
+  throw InputError({.file = picture,
+                    .what = "--svg draws one source, but there are " + std::to_string(sources.size()),
+                    .why = {},
+                    .suggestion = "name one with --source NAME"});
+}
+
+PointResult compute_point(const PointArguments& args, const Scene& scene) {
+  PointResult result{.receiver = args.receiver.make(scene)};
+  result.reflectance = make_reflectance(args, scene, result.receiver);
+  std::optional<AdaptiveSolver> sampler;
+  if (args.adaptive) sampler.emplace(scene);
+  const std::vector<Selection> sources = make_sources(args, scene);
+  if (!args.svg.empty()) require_one(sources, args.svg);
+  result.every_patch = flags::names_all(scene, args.sources);
+  if (one_sweep_will_do(args, scene, sources)) {
+    result.seen = view(scene, result.receiver, {.digits = args.digits, .precision_cap = args.precision_cap});
+  }
+  for (const Selection& selection : sources) {
+    const ExactSource source(scene, selection);
+    result.sources.push_back(compute_source(args, scene, result, source, sampler));
+  }
+  add_up(result);
+  result.stacked = result.every_patch && has_stacked(args, scene, result);
+  return result;
+}
+
+// --- the face that the receiver was probably meant to lie on ---
+
+// "the form factor of 'light' is 0.0179 instead of 0". Empty if none changes.
+std::string effect_of(const Scene& scene, const PointResult& point, const Receiver& receiver) {
+  std::string text;
+  for (const PointTerm& one : point.sources) {
+    const FormFactor there = exact_form_factor(scene, receiver, ExactSource(scene, one.source));
+    if (there.value == one.exact.value) continue;
+    text += fmt::format("{} '{}' is {} instead of {}", text.empty() ? "the form factor of" : ", of",
+                        shown_name(scene, one.source), text::shortest(there.value), text::shortest(one.exact.value));
+  }
+  return text;
+}
+
+// Says on stderr that x lies near a face that is not its own, and what would follow if it were.
+void warn_of_face_nearby(const Scene& scene, const PointResult& point) {
+  const auto sees_no_front = [&] {
+    const auto is_zero = [](const PointTerm& one) { return one.exact.status == Status::kZero; };
+    return std::ranges::all_of(point.sources, is_zero) && sees_only_backs(view(scene, point.receiver));
+  };
+  warn_of_near_face(scene, point.receiver, sees_no_front,
+                    [&](const Receiver& there) { return effect_of(scene, point, there); });
+}
+
+// --- flags and warnings ---
 
 constexpr int kMostDigits = 10000;
 
@@ -120,10 +310,11 @@ int run(const CLI::App& command, const PointArguments& args) {
   refuse_settings_without_adaptive(command, args);
   refuse_along_without_gradient(args);
   warn_of_idle_options(command, args);
-  const Scene scene = load_point_scene(args);
+  const Scene scene = args.scene.load();
+  print_warnings(scene.warnings());
   const PointResult point = compute_point(args, scene);
   warn_if_off_its_face(scene, point.receiver);
-  warn_of_near_face(scene, point);
+  warn_of_face_nearby(scene, point);
   warn_if_flipped(scene, point);
   const auto is_zero = [](const PointTerm& one) { return one.exact.status == Status::kZero; };
   if (std::ranges::all_of(point.sources, is_zero)) warn_of_turned_surfaces(scene);
@@ -161,11 +352,10 @@ std::string is_a_tolerance(const std::string& text) {
 
 void add_receiver_flags(CLI::App& app, PointArguments& args) {
   args.receiver.add_to(app);
-  app.add_option(
-         "--source", args.sources,
-         std::string("Source patch or face") + flags::kNamesHelp +
-             "; all: a table of every patch, with the sum and what is missing to 1 (default: every emitting patch, and "
-             "their sum)")
+  app.add_option("--source", args.sources,
+                 std::string("Source patch or face") + flags::kNamesHelp +
+                     "; all: a table of every patch, with the sum and what is missing to 1 (default: every emitting "
+                     "patch, and their sum)")
       ->type_name("NAME[:K]");
   app.add_option(
          "--reflectance", args.reflectance,
@@ -187,8 +377,8 @@ void add_output_flags(CLI::App& app, PointArguments& args) {
                "Also print the visible fractions as exact rationals, one per plane of the source");
   app.add_flag("--gradient", args.gradient,
                "Also print dF/dx, dF/dy, dF/dz, per unit of length, and the vector V with F = n . V / |n|; where the "
-               "derivative does not exist (a kink), the reason. With --plain: one line of value and derivatives, or "
-               "of value and the word kink, separated by tabs");
+               "derivative does not exist (a kink), the reason. With --plain: one line of value and derivatives, or of "
+               "value and the word kink, separated by tabs");
   app.add_flag("--vertices", args.vertices,
                "With --gradient: also the derivatives by the coordinates of every vertex that moves the visible "
                "boundary, per unit of length. Vertices at equal coordinates move together");
@@ -201,10 +391,9 @@ void add_output_flags(CLI::App& app, PointArguments& args) {
   plain->excludes(json);
   app.add_flag("--explain", args.explain,
                "Show which stages ran, which were skipped and why, and the occluders that hide a part of the source");
-  app.add_option("--svg", args.svg,
-                 "Draw the source in its plane, with the shadows of the occluders and the visible region")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kSvg));
+  flags::add_written(app, "--svg", args.svg,
+                     "Draw the source in its plane, with the shadows of the occluders and the visible region",
+                     flags::Format::kSvg);
 }
 
 void add_adaptive_flags(CLI::App& app, PointArguments& args) {

@@ -11,9 +11,8 @@
 #include "exactff/exact.h"
 #include "exactff/receiver.h"
 #include "exactff/view.h"
-#include "flags/engine.h"
 #include "flags/scene.h"
-#include "flags/vector.h"
+#include "flags/values.h"
 
 namespace exactff::cli {
 
@@ -76,24 +75,14 @@ struct PointResult {
   [[nodiscard]] bool is_mixed() const { return emitters > 0 && emitters < sources.size(); }
 };
 
-// Prints the scene's warnings.
-[[nodiscard]] Scene load_point_scene(const PointArguments& args);
-[[nodiscard]] PointResult compute_point(const PointArguments& args, const Scene& scene);
-// Says on stderr that x lies near a face that is not its own, and what would follow if it were.
-void warn_of_near_face(const Scene& scene, const PointResult& point);
-
 // `--plain`: "0" is a proved zero; a positive value that rounds to zero prints "0.0".
 [[nodiscard]] std::string plain_value(const FormFactor& result);
 // The value and dF/dx, dF/dy, dF/dz, separated by tabs; the value and "kink" where there are none. "0" is a proved
 // zero, "0.0" an underflow or a derivative whose ball contains 0.
 [[nodiscard]] std::string plain_gradient(const FormFactor& result);
 [[nodiscard]] std::string value_text(const FormFactor& result, int digits);
-// To the precision of --digits, else the nearest double; empty if the ball does not determine it.
-[[nodiscard]] std::optional<std::string> sum_text(const Enclosure& sum, int digits);
-// 1 - sum.
-[[nodiscard]] Enclosure missing_to_one(const Enclosure& sum);
-// One row per source, their sum and what is missing to 1.
-void print_patch_table(const PointArguments& args, const Scene& scene, const PointResult& point);
+// To the precision of --digits, else the nearest double; "between" its bounds if the ball does not determine it.
+[[nodiscard]] std::string sum_words(const Enclosure& sum, int digits);
 void print_point_table(const PointArguments& args, const Scene& scene, const PointResult& point);
 void print_point_json(const PointArguments& args, const Scene& scene, const PointResult& point);
 void draw_point(const PointArguments& args, const Scene& scene, const PointResult& point);

@@ -1,3 +1,6 @@
+// What exactff point prints and draws.
+#include <fmt/format.h>
+
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -13,12 +16,6 @@ namespace exactff::cli {
 
 using text::shortest;
 
-std::string plain_value(const FormFactor& result) {
-  if (result.status == Status::kZero) return "0";
-  if (result.status == Status::kUnderflow) return "0.0";
-  return shortest(result.value);
-}
-
 namespace {
 
 std::string plain_derivative(const Derivative& d) {
@@ -26,28 +23,7 @@ std::string plain_derivative(const Derivative& d) {
   return d.value == 0.0 ? "0.0" : shortest(d.value);
 }
 
-}  // namespace
-
-std::string plain_gradient(const FormFactor& result) {
-  std::string line = plain_value(result);
-  if (result.gradient->kink) return line + "\tkink";
-  for (const Derivative& d : result.gradient->position) line += '\t' + plain_derivative(d);
-  return line;
-}
-
-std::string value_text(const FormFactor& result, int digits) {
-  if (result.status == Status::kZero) return "0";
-  if (digits > 0) {
-    if (const std::optional<std::string> decimals = result.enclosure.decimals(digits)) return *decimals;
-  }
-  return plain_value(result);
-}
-
-namespace {
-
 constexpr std::size_t kMostSharesShown = 20;
-
-std::string vec_text(const Vec3& v) { return "(" + shortest(v.x) + ", " + shortest(v.y) + ", " + shortest(v.z) + ")"; }
 
 void print_stages(const Scene& scene, const PointTerm& one) {
   constexpr std::size_t kMostPlanes = 12;
@@ -93,8 +69,8 @@ void print_exact_fractions(const Scene& scene, const PointTerm& one) {
 
 std::string derivative_words(const Derivative& d) {
   const bool holds_zero = d.status == DerivativeStatus::kEnclosed && d.value == 0.0;
-  if (holds_zero) return "0.0  (enclosed: within " + d.enclosure.radius() + " of " + d.enclosure.midpoint() + ")";
-  return plain_derivative(d) + "  (" + std::string(to_string(d.status)) + ")";
+  if (holds_zero) return fmt::format("0.0  (enclosed: within {} of {})", d.enclosure.radius(), d.enclosure.midpoint());
+  return fmt::format("{}  ({})", plain_derivative(d), to_string(d.status));
 }
 
 std::string names_of(const Scene& scene, const std::vector<FaceId>& faces) {
@@ -131,8 +107,8 @@ void print_arcs(const Gradient& gradient) {
   for (std::size_t i = 0; i < gradient.arcs.size() && i < kMostArcs; ++i) {
     const GradientArc& arc = gradient.arcs[i];
     const auto brief = [](const Vec3& v) {
-      return "(" + text::short_number(v.x, 6) + ", " + text::short_number(v.y, 6) + ", " + text::short_number(v.z, 6) +
-             ")";
+      return fmt::format("({}, {}, {})", text::short_number(v.x, 6), text::short_number(v.y, 6),
+                         text::short_number(v.z, 6));
     };
     std::cout << "    the line through " << brief(arc.begin) << " and " << brief(arc.end) << " adds " << brief(arc.part)
               << '\n';
@@ -147,7 +123,7 @@ void print_vertices(const Scene& scene, const Gradient& gradient) {
   if (gradient.kink) return;
   std::cout << "\n  vertices that move the visible boundary: " << gradient.vertices.size() << '\n';
   for (const VertexDerivative& vertex : gradient.vertices) {
-    std::cout << "    " << vec_text(scene.vertices()[vertex.vertex]);
+    std::cout << "    " << place_text(scene.vertices()[vertex.vertex]);
     if (vertex.is_kink) {
       std::cout << "  none: a kink\n";
       continue;
@@ -158,7 +134,7 @@ void print_vertices(const Scene& scene, const Gradient& gradient) {
   const char* const whose = gradient.frames.size() == 1 ? "the source's plane" : "the plane of a face of the source";
   for (const auto& frame : gradient.frames) {
     std::cout << "  " << whose << " follows";
-    for (const std::uint32_t corner : frame) std::cout << ' ' << vec_text(scene.vertices()[corner]);
+    for (const std::uint32_t corner : frame) std::cout << ' ' << place_text(scene.vertices()[corner]);
     std::cout << '\n';
   }
 }
@@ -188,25 +164,7 @@ void print_source(const PointArguments& args, const Scene& scene, const PointTer
   if (one.exact.gradient) print_arcs(*one.exact.gradient);
 }
 
-void print_sum(const PointArguments& args, const std::string& title, const Enclosure& sum) {
-  std::cout << title << "\n  form factor  " << sum_text(sum, args.digits).value_or("between the bounds")
-            << "\n  enclosure    [" << shortest(sum.lower()) << ", " << shortest(sum.upper()) << "]\n";
-}
-
-std::string rgb_text(const Rgb& c) { return shortest(c.r) + ' ' + shortest(c.g) + ' ' + shortest(c.b); }
-
-std::string radiosity_words(const PointResult& point) {
-  const std::size_t others = point.sources.size() - point.emitters;
-  if (others == 0) return "(reflectance x Ke of the source x form factor, per channel)";
-  if (point.emitters == 0) return "(reflectance x 1 x form factor, per channel, since nothing is emitted)";
-  return "(reflectance x Ke x form factor, per channel, over the " + text::counted(point.emitters, "source") +
-         (point.emitters == 1 ? " that emits)" : " that emit)") + "\n  not added         " +
-         rgb_text(point.radiosity_of_others) + "  (from the " + std::to_string(others) +
-         (others == 1 ? " that emits" : " that emit") + " nothing, with a radiosity of 1)";
-}
-
-}  // namespace
-
+// Empty if the ball does not determine it.
 std::optional<std::string> sum_text(const Enclosure& sum, int digits) {
   if (digits > 0) {
     if (auto decimals = sum.decimals(digits)) return decimals;
@@ -215,32 +173,81 @@ std::optional<std::string> sum_text(const Enclosure& sum, int digits) {
   return nearest ? std::optional(shortest(*nearest)) : std::nullopt;
 }
 
-void print_point_table(const PointArguments& args, const Scene& scene, const PointResult& point) {
-  std::cout << "receiver " << vec_text(point.receiver.point) << ", normal " << vec_text(point.receiver.normal);
-  if (!point.receiver.on.empty()) std::cout << ", on " << text::printable(scene.name_of(point.receiver.on));
-  if (const std::optional<FaceId> cover = buried_under(scene, point.receiver)) {
-    std::cout << "\nburied under " << shown_name(scene, *cover)
-              << ": a closed solid stands on the receiver's face there, so it sees nothing";
-  }
-  std::cout << "\n\n";
-  const bool blocks = !point.every_patch || args.explain || args.exact_fraction || args.gradient;
-  for (const PointTerm& one : point.sources) {
-    if (blocks) print_source(args, scene, one);
-  }
-  if (point.every_patch) {
-    if (blocks) std::cout << '\n';
-    print_patch_table(args, scene, point);
-  } else if (point.sources.size() > 1) {
-    print_sum(args, "sum of " + text::counted(point.sources.size(), "source"), point.sum);
-    if (point.is_mixed())
-      print_sum(args,
-                "sum of the " + std::to_string(point.emitters) + (point.emitters == 1 ? " that emits" : " that emit"),
-                point.sum_of_emitters);
-  }
-  std::cout << "\nradiosity received  " << rgb_text(point.radiosity) << "  " << radiosity_words(point) << '\n';
+void print_sum(const PointArguments& args, const std::string& title, const Enclosure& sum) {
+  std::cout << title << "\n  form factor  " << sum_text(sum, args.digits).value_or("between the bounds")
+            << "\n  enclosure    [" << shortest(sum.lower()) << ", " << shortest(sum.upper()) << "]\n";
 }
 
-namespace {
+std::string rgb_text(const Rgb& c) { return fmt::format("{} {} {}", shortest(c.r), shortest(c.g), shortest(c.b)); }
+
+std::string radiosity_words(const PointResult& point) {
+  const std::size_t others = point.sources.size() - point.emitters;
+  if (others == 0) return "(reflectance x Ke of the source x form factor, per channel)";
+  if (point.emitters == 0) return "(reflectance x 1 x form factor, per channel, since nothing is emitted)";
+  return fmt::format(
+      "(reflectance x Ke x form factor, per channel, over the {} that {})\n  not added         {}  (from the {} that "
+      "{} nothing, with a radiosity of 1)",
+      text::counted(point.emitters, "source"), point.emitters == 1 ? "emits" : "emit",
+      rgb_text(point.radiosity_of_others), others, others == 1 ? "emits" : "emit");
+}
+
+// --- the table of --source all: what the receiver sees of every patch, and what is missing to 1 ---
+
+// 1 - sum.
+Enclosure missing_to_one(const Enclosure& sum) {
+  Enclosure missing = Enclosure::of(1.0);
+  missing -= sum;
+  return missing;
+}
+
+// What 1 less the sum is.
+std::string missing_meaning(const Scene& scene, const PointResult& point) {
+  if (point.stacked) {
+    return "patches lie in one plane over each other, and each counts fully; exactff view has the shares of what is "
+           "seen";
+  }
+  if (!scene.transparent().empty()) return "transparent patches count fully, and so does what is seen through them";
+  return "the share that reaches no patch's front: it leaves the scene or meets the back of a face";
+}
+
+std::string missing_words(const Enclosure& missing, const std::string& meaning, int digits) {
+  const double low = missing.lower(), high = missing.upper();
+  if (low <= 0.0 && high >= 0.0) {
+    const double most = std::max(-low, high);
+    return most == 0.0 ? "0 (exactly)" : "0, to within " + text::short_number(most, 2);
+  }
+  const std::string number = sum_words(missing, digits);
+  return fmt::format("{}  ({}{})", number, high < 0.0 ? "the sum exceeds 1: " : "", meaning);
+}
+
+// One row per source, their sum and what is missing to 1.
+void print_patch_table(const PointArguments& args, const Scene& scene, const PointResult& point) {
+  const bool visible = args.fraction || args.exact_fraction;
+  TextTable table;
+  table.add_columns({"patch", "form factor", "status"});
+  if (visible) table.add_column("visible");
+  if (args.adaptive) table.add_column("ray-sampled adaptive");
+  table.add_column("emits");
+  for (const PointTerm& one : point.sources) {
+    std::vector<std::string> cells = {scene.name_of(one.source), value_text(one.exact, args.digits),
+                                      std::string(to_string(one.exact.status))};
+    if (visible) cells.push_back(shortest(one.exact.visible_fraction.value_or(0.0)));
+    if (args.adaptive) cells.push_back(shortest(one.adaptive->form_factor));
+    cells.emplace_back(one.emits ? "yes" : "-");
+    table.add_row(std::move(cells));
+  }
+  table.print(std::cout);
+  std::cout << "\nsum           " << sum_words(point.sum, args.digits) << "  (of "
+            << text::counted(point.sources.size(), "patch", "patches") << ", added as balls)\nmissing to 1  "
+            << missing_words(missing_to_one(point.sum), missing_meaning(scene, point), args.digits) << '\n';
+  if (point.is_mixed()) {
+    std::cout << "emitters      " << sum_words(point.sum_of_emitters, args.digits) << "  (the sum over the "
+              << text::counted(point.emitters, "patch", "patches")
+              << (point.emitters == 1 ? " that emits)\n" : " that emit)\n");
+  }
+}
+
+// --- JSON ---
 
 nlohmann::ordered_json numbers_json(const Vec3& v) { return nlohmann::ordered_json::array({v.x, v.y, v.z}); }
 nlohmann::ordered_json numbers_json(const Rgb& c) { return nlohmann::ordered_json::array({c.r, c.g, c.b}); }
@@ -362,6 +369,54 @@ nlohmann::ordered_json source_json(const PointArguments& args, const Scene& scen
 }
 
 }  // namespace
+
+std::string plain_value(const FormFactor& result) {
+  if (result.status == Status::kZero) return "0";
+  if (result.status == Status::kUnderflow) return "0.0";
+  return shortest(result.value);
+}
+
+std::string plain_gradient(const FormFactor& result) {
+  std::string line = plain_value(result);
+  if (result.gradient->kink) return line + "\tkink";
+  for (const Derivative& d : result.gradient->position) line += '\t' + plain_derivative(d);
+  return line;
+}
+
+std::string value_text(const FormFactor& result, int digits) {
+  if (result.status == Status::kZero) return "0";
+  if (digits > 0) {
+    if (const std::optional<std::string> decimals = result.enclosure.decimals(digits)) return *decimals;
+  }
+  return plain_value(result);
+}
+
+std::string sum_words(const Enclosure& sum, int digits) {
+  return sum_text(sum, digits).value_or(fmt::format("between {} and {}", shortest(sum.lower()), shortest(sum.upper())));
+}
+
+void print_point_table(const PointArguments& args, const Scene& scene, const PointResult& point) {
+  std::cout << "receiver " << text::printable(receiver_text(scene, point.receiver));
+  if (const std::optional<FaceId> cover = buried_under(scene, point.receiver)) {
+    std::cout << "\nburied under " << shown_name(scene, *cover)
+              << ": a closed solid stands on the receiver's face there, so it sees nothing";
+  }
+  std::cout << "\n\n";
+  const bool blocks = !point.every_patch || args.explain || args.exact_fraction || args.gradient;
+  for (const PointTerm& one : point.sources) {
+    if (blocks) print_source(args, scene, one);
+  }
+  if (point.every_patch) {
+    if (blocks) std::cout << '\n';
+    print_patch_table(args, scene, point);
+  } else if (point.sources.size() > 1) {
+    print_sum(args, "sum of " + text::counted(point.sources.size(), "source"), point.sum);
+    if (point.is_mixed())
+      print_sum(args, fmt::format("sum of the {} that {}", point.emitters, point.emitters == 1 ? "emits" : "emit"),
+                point.sum_of_emitters);
+  }
+  std::cout << "\nradiosity received  " << rgb_text(point.radiosity) << "  " << radiosity_words(point) << '\n';
+}
 
 void print_point_json(const PointArguments& args, const Scene& scene, const PointResult& point) {
   nlohmann::ordered_json json = {{"program", "exactff"},

@@ -14,19 +14,17 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/exit_code.h"
 #include "cli/further_files.h"
 #include "cli/kept_work.h"
-#include "cli/long_run.h"
 #include "cli/output.h"
-#include "cli/text_table.h"
+#include "cli/process.h"
 #include "cli/view_factor_words.h"
 #include "exactff/jobs.h"
 #include "exactff/version.h"
 #include "files/file.h"
 #include "flags/file_options.h"
-#include "flags/lists.h"
 #include "flags/scene.h"
+#include "flags/values.h"
 #include "radiosity/narrowing.h"
 #include "radiosity/on_faces.h"
 #include "scene/selections.h"
@@ -120,7 +118,7 @@ void print_radiosities(const Scene& scene, const Solution& solution, std::size_t
   TextTable table;
   table.add_column("patch");
   if (channels > 1) table.add_column("channel");
-  for (const char* title : {"radiosity", "lower", "upper", "irradiance", "variation"}) table.add_column(title);
+  table.add_columns({"radiosity", "lower", "upper", "irradiance", "variation"});
   const std::size_t count = std::min(solution.patches.size(), kMostPatchesShown);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t c = 0; c < channels; ++c) {
@@ -154,7 +152,7 @@ void print_balance(const Solution& solution, std::size_t channels) {
   std::cout << "\nWhere the light goes, in the unit of Ke times area:\n";
   TextTable table;
   if (channels > 1) table.add_column("channel");
-  for (const char* title : {"emitted", "absorbed", "lost", "(back)", "(open)"}) table.add_column(title);
+  table.add_columns({"emitted", "absorbed", "lost", "(back)", "(open)"});
   for (std::size_t c = 0; c < channels; ++c) {
     const radiosity::Balance& balance = solution.channels[c].balance;
     std::vector<std::string> cells;
@@ -516,19 +514,17 @@ int run(const RadiosityArguments& given) {
 }
 
 void add_outputs(CLI::App& command, RadiosityArguments& args) {
-  auto* plain = command.add_flag("--plain", args.plain,
-                                 "Print a line for each patch and channel: PATCH, CHANNEL, RADIOSITY, LOWER, UPPER, "
-                                 "CLAIM, with tabs");
+  auto* plain = command.add_flag(
+      "--plain", args.plain,
+      "Print a line for each patch and channel: PATCH, CHANNEL, RADIOSITY, LOWER, UPPER, CLAIM, with tabs");
   auto* json = command.add_flag("--json", args.json, "Print JSON");
   auto* csv = command.add_flag("--csv", args.csv, "Print CSV");
   plain->excludes(json)->excludes(csv);
   json->excludes(csv);
-  command.add_option("-o,--output", args.output, "Write a CSV file")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kCsv, flags::Beside::kViewFactors));
-  command.add_option("--vtk", args.vtk, "Write the scene with its radiosities for ParaView, as NAME.vtp or NAME.vtu")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kVtk));
+  flags::add_written(command, "-o,--output", args.output, "Write a CSV file", flags::Format::kCsv,
+                     flags::Beside::kViewFactors);
+  flags::add_written(command, "--vtk", args.vtk,
+                     "Write the scene with its radiosities for ParaView, as NAME.vtp or NAME.vtu", flags::Format::kVtk);
   CLI::Option* resume =
       command.add_flag("--resume", args.resume,
                        "Continue an interrupted run with its kept view factors, or keep a complete file; needs -o");
@@ -559,9 +555,7 @@ Command add_radiosity(CLI::App& app) {
   CLI::Option* backs =
       command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces, for the balance");
   const ClaimOptions claims = add_claim(*command, args->options.factors.certify);
-  command->add_option("--matrix", args->matrix, "Take the view factors from this file of exactff matrix")
-      ->type_name("FILE")
-      ->check(flags::is_read())
+  flags::add_read(*command, "--matrix", args->matrix, "Take the view factors from this file of exactff matrix")
       ->excludes(accuracy)
       ->excludes(budget)
       ->excludes(backs)

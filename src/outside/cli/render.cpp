@@ -1,27 +1,29 @@
 // exactff render: exact images of the direct light in a scene, or of the light of given radiosities.
 #include "exactff/render.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/exit_code.h"
 #include "cli/kept_work.h"
-#include "cli/long_run.h"
 #include "cli/output.h"
-#include "cli/render_output.h"
+#include "cli/process.h"
 #include "exactff/slips.h"
-#include "flags/camera.h"
-#include "flags/engine.h"
+#include "files/file.h"
+#include "files/npy_file.h"
 #include "flags/file_options.h"
-#include "flags/lists.h"
+#include "flags/receivers.h"
 #include "flags/scene.h"
-#include "flags/solution.h"
-#include "flags/sources.h"
+#include "flags/values.h"
 #include "render/identity.h"
 #include "text/escape.h"
 #include "text/names.h"
@@ -31,6 +33,159 @@
 
 namespace exactff::cli {
 namespace {
+
+// --- what it writes and prints ---
+
+struct Rendered {
+  render::Picture picture = {};
+  std::optional<render::Picture> judged = {};  // by the method of --against, or its file
+  std::string judged_name = {};
+  std::optional<render::Errors> errors = {};
+};
+
+struct RenderFiles {
+  std::string image, doubles, bounds;
+  std::optional<double> exposure;
+  bool strip = false;
+};
+
+namespace fs = std::filesystem;
+
+// Opens the file beside its place, as writing it will, and removes it.
+void check_file(const std::string& file) {
+  std::error_code ignored;
+  if (fs::is_other(file, ignored)) return;
+  if (fs::is_directory(file, ignored)) {
+    text::refuse(fs::path(file), "is a folder", "the result is a file", "name a file");
+  }
+  const files::WholeFile probe(file);
+}
+
+void write_array(const std::string& file, const std::vector<std::size_t>& shape,
+                 const std::vector<const std::vector<double>*>& parts) {
+  files::NpyFile<double> array(file, shape);
+  for (const std::vector<double>* part : parts) array.append(*part);
+  array.commit();
+}
+
+std::string took(const render::Picture& picture) { return text::duration(picture.seconds); }
+
+// Not read from a file.
+bool is_computed(const render::Picture& picture) { return picture.seconds > 0.0; }
+
+std::string error_words(const render::Errors& errors) {
+  return "RMS " + text::short_number(errors.rms) + ", 99th percentile " + text::short_number(errors.p99) + ", worst " +
+         text::short_number(errors.worst);
+}
+
+std::string wrong_words(const render::Errors& errors) {
+  return text::share(errors.wrong, errors.pixels) + " of pixels wrong by over 10 %";
+}
+
+// For a method with a formula of its own, that name; the exact values have none.
+std::string name_of_picture(const render::Picture& picture) {
+  const auto found = std::ranges::find(picture.metadata, "method", &std::pair<std::string, std::string>::first);
+  return found == picture.metadata.end() ? "" : found->second.substr(0, found->second.find(", correctly"));
+}
+
+render::Colours strip_of(const Rendered& rendered, double exposure) {
+  const double scale = render::colour_scale(*rendered.errors);
+  return render::strip(std::array{render::develop(rendered.picture, exposure),
+                                  render::develop(*rendered.judged, exposure),
+                                  render::coloured(*rendered.errors, rendered.picture.size, scale)});
+}
+
+// What the strip shows, from left to right.
+std::string strip_words(const Rendered& rendered) {
+  const double scale = render::colour_scale(*rendered.errors);
+  return name_of_picture(rendered.picture) + " | " + rendered.judged_name +
+         " | errors: red too bright, blue too dark, full colour from " + text::short_number(scale, 2) +
+         " on, black outlines around regions that are mostly wrong by over 10 %";
+}
+
+std::string image_bytes(const RenderFiles& files, const Rendered& rendered) {
+  const bool png = render::image_kind(files.image) == render::ImageKind::kPng;
+  const auto exposure = [&] { return files.exposure ? *files.exposure : render::automatic_exposure(rendered.picture); };
+  render::Metadata metadata = rendered.picture.metadata;
+  if (files.strip) {
+    metadata.emplace_back("strip", strip_words(rendered));
+    return render::png_of(strip_of(rendered, exposure()), metadata);
+  }
+  if (rendered.errors) {
+    if (!png) return render::exr_of(render::difference(*rendered.judged, rendered.picture));
+    const double scale = render::colour_scale(*rendered.errors);
+    return render::png_of(render::coloured(*rendered.errors, rendered.picture.size, scale),
+                          render::difference(*rendered.judged, rendered.picture).metadata);
+  }
+  return png ? render::png_of(render::develop(rendered.picture, exposure()), metadata)
+             : render::exr_of(rendered.picture);
+}
+
+std::string words_of_pixels(const render::Picture& picture) {
+  std::array<std::uint64_t, 4> count{};
+  for (const render::Shows shows : picture.shows) ++count[static_cast<std::size_t>(shows)];
+  constexpr std::array kNames = {"show nothing", "black backs", "lit faces", "emitters"};
+  std::string words;
+  for (const std::size_t kind : {2U, 3U, 1U, 0U}) {
+    if (count[kind] > 0) words += (words.empty() ? "" : ", ") + std::to_string(count[kind]) + ' ' + kNames[kind];
+  }
+  return words;
+}
+
+// Throws InputError if a file cannot be written. Empty names are left out.
+void check_files(const std::vector<std::string>& images, const std::vector<std::string>& arrays) {
+  for (const std::string& file : images) check_file(file);
+  for (const std::string& file : arrays) {
+    if (file.empty()) continue;
+    if (fs::path(file).extension() != ".npy") {
+      text::refuse(fs::path(file), "does not end in .npy", "it is a NumPy file, which other programs recognise by that",
+                   "name a .npy file");
+    }
+    check_file(file);
+  }
+}
+
+void write_files(const RenderFiles& files, const Rendered& rendered) {
+  const render::Picture& picture = rendered.picture;
+  const auto height = static_cast<std::size_t>(picture.size.height),
+             width = static_cast<std::size_t>(picture.size.width);
+  const std::string image = image_bytes(files, rendered);
+  if (!files.doubles.empty()) write_array(files.doubles, {height, width, 3}, {&picture.values});
+  if (!files.bounds.empty()) write_array(files.bounds, {2, height, width, 3}, {&picture.lower, &picture.upper});
+  write_whole_file(files.image, image);
+}
+
+// The summary on standard output. `tell_camera`: the camera was chosen by the program.
+void print_rendered(const Rendered& rendered, const RenderFiles& files, const std::string& camera) {
+  const render::Picture& picture = rendered.picture;
+  std::cout << picture.size.width << " x " << picture.size.height << " pixels: " << words_of_pixels(picture) << '\n';
+  std::cout << "computed in " << took(picture) << " of processor time";
+  if (rendered.judged && is_computed(*rendered.judged))
+    std::cout << ", " << text::printable(rendered.judged_name) << " in " << took(*rendered.judged);
+  std::cout << '\n';
+  if (!camera.empty()) std::cout << "camera: " << camera << '\n';
+  if (rendered.errors) {
+    const render::Errors& errors = *rendered.errors;
+    std::cout << "errors: " << error_words(errors) << "; relative: median "
+              << text::short_number(errors.relative_median) << ", 99th percentile "
+              << text::short_number(errors.relative_p99) << "; " << wrong_words(errors) << '\n';
+  }
+  if (files.strip) std::cout << "strip: " << text::printable(strip_words(rendered)) << '\n';
+  const bool develops = render::image_kind(files.image) == render::ImageKind::kPng && (files.strip || !rendered.errors);
+  if (develops && !files.exposure) {
+    std::cout << "automatic exposure: " << text::short_number(render::automatic_exposure(picture), 6) << '\n';
+  }
+  std::cout << "Image: " << text::printable(files.image) << '\n';
+}
+
+// Returns the exit code: 3, with a message, if a value is not certified.
+int warn_of_uncertified_points(const Rendered& rendered) {
+  const std::uint64_t points = rendered.picture.not_certified;
+  if (points == 0) return 0;
+  std::cerr << "exactff: the values of " << text::counted(points, "point")
+            << " could not be certified within the precision cap; they are estimates, and their bounds are valid\n";
+  return kNotAsAsked;
+}
 
 constexpr const char* kRenderFooter =
     "Each pixel shows the first face that its ray meets, decided exactly, and the light that this point receives\n"
@@ -147,11 +302,9 @@ Opponent opponent_named(const std::string& text, const render::Size& size) {
   const std::string extension = text::in_lower_case(std::filesystem::path(text).extension().string());
   if (extension != ".npy" && extension != ".exr") return {.method = method_named(text)};
   render::Picture picture = render::read_picture(text);
-  const auto words = [](const render::Size& one) {
-    return std::to_string(one.width) + 'x' + std::to_string(one.height);
-  };
+  const auto words = [](const render::Size& one) { return fmt::format("{}x{}", one.width, one.height); };
   if (words(picture.size) != words(size)) {
-    text::refuse(std::filesystem::path(text), "has " + words(picture.size) + " pixels, and the picture " + words(size),
+    text::refuse(fs::path(text), fmt::format("has {} pixels, and the picture {}", words(picture.size), words(size)),
                  "each pixel is compared with one of the same place", "give --size " + words(picture.size));
   }
   return {.picture = std::move(picture)};
@@ -309,10 +462,9 @@ void add_camera_flags(CLI::App& app, RenderArguments& args) {
 
 void add_value_flags(CLI::App& app, RenderArguments& args) {
   app.add_flag("--two-sided", args.two_sided, "Light the backs of faces, too, instead of showing them black");
-  app.add_option(
-         "--quantity", args.quantity,
-         "What a pixel holds: the radiance B / pi, the radiosity B, the irradiance, the sum of form factors, or "
-         "the length of its gradient along the surface")
+  app.add_option("--quantity", args.quantity,
+                 "What a pixel holds: the radiance B / pi, the radiosity B, the irradiance, the sum of form factors, "
+                 "or the length of its gradient along the surface")
       ->check(CLI::IsMember({"radiance", "radiosity", "irradiance", "form-factor", "gradient"}))
       ->capture_default_str();
   app.add_option("--ke", args.ke, "What Ke means in the scene")
@@ -326,21 +478,19 @@ void add_value_flags(CLI::App& app, RenderArguments& args) {
 }
 
 void add_output_flags(CLI::App& app, RenderArguments& args) {
-  app.add_flag("--layers", args.layers,
-               "EXR: add form factor, visible part and fraction of each source, position, normal, distance, face and "
-               "patch");
+  app.add_flag(
+      "--layers", args.layers,
+      "EXR: add form factor, visible part and fraction of each source, position, normal, distance, face and patch");
   app.add_option("--exposure", args.exposure, "PNG: multiply by this factor (default: the 99th percentile becomes 0.8)")
       ->type_name("NUMBER")
       ->check(flags::is_positive);
-  app.add_option(
-         "--double", args.doubles,
-         "Also write the numbers as a NumPy file of doubles, shape (height, width, 3), NaN where nothing is met")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kNpy));
-  app.add_option("--bounds", args.bounds,
-                 "Also write their bounds as a NumPy file, shape (2, height, width, 3): lower, upper")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kNpy));
+  flags::add_written(
+      app, "--double", args.doubles,
+      "Also write the numbers as a NumPy file of doubles, shape (height, width, 3), NaN where nothing is met",
+      flags::Format::kNpy);
+  flags::add_written(app, "--bounds", args.bounds,
+                     "Also write their bounds as a NumPy file, shape (2, height, width, 3): lower, upper",
+                     flags::Format::kNpy);
 }
 
 }  // namespace
@@ -357,13 +507,10 @@ Command add_render(CLI::App& app) {
   add_value_flags(*command, *args);
   add_output_flags(*command, *args);
   args->engine.add_to(*command);
-  command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
-  command->add_option("-o,--output", args->image, "Image to write, .exr or .png; an existing one is replaced")
-      ->required()
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kImage, flags::Beside::kJournal));
+  flags::add_threads(*command, args->threads);
+  flags::add_written(*command, "-o,--output", args->image, "Image to write, .exr or .png; an existing one is replaced",
+                     flags::Format::kImage, flags::Beside::kJournal)
+      ->required();
   CLI::Option* resume = command->add_flag("--resume", args->resume, "Continue an interrupted run, if there is one");
   command->add_flag("--force", args->force, "Start again: discard the tiles of an interrupted run")->excludes(resume);
   command->footer(kRenderFooter);

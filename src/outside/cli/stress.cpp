@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/long_run.h"
 #include "cli/output.h"
-#include "cli/text_table.h"
+#include "cli/process.h"
 #include "flags/file_options.h"
+#include "flags/values.h"
 #include "report/plan.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -22,8 +22,7 @@ constexpr const char* kStressFooter =
     "--family, all families are run; --list prints their names. A table shows the largest stiffness up to which each\n"
     "method's error stays below 1e-3, 1e-6 and 1e-12; Tampieri's algorithm is judged by the tolerance that it was "
     "given,\n"
-    "1e-4 of the unoccluded form factor. With --all, a table for each family shows the relative errors "
-    "at\n"
+    "1e-4 of the unoccluded form factor. With --all, a table for each family shows the relative errors at\n"
     "each stiffness. With -o, all tables are written as CSV, with a report and figures. After an interruption "
     "(Ctrl-C),\n"
     "the finished families are shown, and with -o they are written to DIR.part.\n"
@@ -45,9 +44,7 @@ struct StressArguments {
 
 void print_list() {
   TextTable table;
-  table.add_column("family");
-  table.add_column("stiffness");
-  table.add_column("what happens");
+  table.add_columns({"family", "stiffness", "what happens"});
   for (const stress::FamilyInfo& family : stress::families()) {
     table.add_row({std::string(family.name), std::string(family.stiffness), std::string(family.title)});
   }
@@ -58,8 +55,7 @@ void print_family(const stress::FamilyResult& result) {
   std::cout << result.family.title << " (" << result.family.name << ")\n"
             << "stiffness: " << result.family.stiffness << "; truth: " << to_string(result.family.evidence) << '\n';
   TextTable table;
-  for (const char* title : {"stiffness", "form factor", "exact bits", "exact time"})
-    table.add_column(title, Align::kRight);
+  table.add_columns({"stiffness", "form factor", "exact bits", "exact time"}, Align::kRight);
   for (stress::Method method : stress::kMethods) table.add_column(std::string(short_name_of(method)), Align::kRight);
   for (const stress::Row& row : result.rows) {
     const stress::Answer& exact = row.of(stress::Method::kExact);
@@ -74,9 +70,8 @@ void print_family(const stress::FamilyResult& result) {
 }
 
 void print_stress_summary(const stress::Report& report) {
-  std::cout
-      << "Largest stiffness with an error below 1e-3, 1e-6, 1e-12, or of tampieri within the tolerance that it was "
-         "given\n(all: to the end; –: not even at the start)\n";
+  std::cout << "Largest stiffness with an error below 1e-3, 1e-6, 1e-12, or of tampieri within the tolerance that it "
+               "was given\n(all: to the end; –: not even at the start)\n";
   TextTable table;
   table.add_column("family");
   table.add_column("ends at", Align::kRight);
@@ -166,9 +161,7 @@ Command add_stress(CLI::App& app) {
       ->type_name("FAMILY");
   command->add_flag("--list", args->list, "List the families and what their stiffness means");
   command->add_flag("--all", args->all, "Also print the errors at each stiffness, about a thousand lines");
-  command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
+  flags::add_threads(*command, args->threads);
   command->add_option("-o,--output", args->folder, "Folder for the report and the tables")
       ->type_name("DIR")
       ->check(flags::is_written_folder());

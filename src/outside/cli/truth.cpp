@@ -13,16 +13,13 @@
 #include "cli/command.h"
 #include "cli/further_files.h"
 #include "cli/kept_work.h"
-#include "cli/long_run.h"
 #include "cli/output.h"
+#include "cli/process.h"
 #include "cli/truth_summary.h"
 #include "exactff/slips.h"
-#include "flags/engine.h"
 #include "flags/file_options.h"
 #include "flags/receivers.h"
 #include "flags/scene.h"
-#include "flags/solution.h"
-#include "flags/sources.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -195,10 +192,9 @@ void check_outputs(const TruthArguments& args) {
     const bool numpy = args.further.vtk.empty() && args.further.exr.empty();
     throw InputError({.what = text::enumerate(further) + (further.size() == 1 ? " is" : " are") + " given with --shard",
                       .why = "a shard has only a part of the rows",
-                      .suggestion = numpy
-                                        ? "give " + text::enumerate(further) + " to exactff merge"
-                                        : "after exactff merge, run this command without --shard, with --resume and -o "
-                                          "FILE for the merged file"});
+                      .suggestion = numpy ? "give " + text::enumerate(further) + " to exactff merge"
+                                          : "after exactff merge, run this command without --shard, with --resume and "
+                                            "-o FILE for the merged file"});
   }
   check_further_files(args.further, args.existing() != jobs::Existing::kRefuse);
 }
@@ -279,19 +275,18 @@ Command add_truth(CLI::App& app) {
   flags::add_source_options_under_sky(*command, args->sources);
   command->add_flag("--unoccluded", args->unoccluded, "Add a column: the form factor without occluders");
   command->add_flag("--fraction", args->fraction, "Add a column: the visible fraction of the source");
-  command->add_flag("--gradient", args->gradient,
-                    "Add columns: the derivatives of the form factor by the receiver's point (dF_dx, dF_dy, dF_dz, per "
-                    "unit of length; empty where they do not exist) and their status (certified, zero, underflow, "
-                    "enclosed or kink)");
+  command->add_flag(
+      "--gradient", args->gradient,
+      "Add columns: the derivatives of the form factor by the receiver's point (dF_dx, dF_dy, dF_dz, per unit of "
+      "length; empty where they do not exist) and their status (certified, zero, underflow, enclosed or kink)");
   command->add_flag("--unit-normals", args->unit_normals,
                     "Add columns ux,uy,uz: the normal scaled to length 1, correctly rounded; the values belong to the "
                     "exact normals in nx,ny,nz");
   command->add_flag("--uv", args->uv, "Add columns u,v: the place of a cell on its grid, from 0 to 1");
   command
-      ->add_option(
-          "--total", args->total,
-          "Add columns total_r,total_g,total_b: this quantity from all sources together, correctly rounded, as "
-          "exactff render shows it (with --exr: radiance; with --radiosity: irradiance)")
+      ->add_option("--total", args->total,
+                   "Add columns total_r,total_g,total_b: this quantity from all sources together, correctly rounded, "
+                   "as exactff render shows it (with --exr: radiance; with --radiosity: irradiance)")
       ->check(CLI::IsMember({"radiance", "radiosity", "irradiance", "form-factor"}));
   command->add_option("--ke", args->ke, "What Ke means in the scene, for totals (default: radiosity)")
       ->check(CLI::IsMember({"radiosity", "radiance"}));

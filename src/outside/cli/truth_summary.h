@@ -4,9 +4,9 @@
 #include <iostream>
 #include <string>
 
-#include "cli/exit_code.h"
 #include "cli/further_files.h"
 #include "cli/output.h"
+#include "cli/process.h"
 #include "exactff/truth.h"
 #include "text/escape.h"
 #include "text/phrases.h"

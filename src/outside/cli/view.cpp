@@ -1,6 +1,8 @@
 // exactff view: the whole view from one receiver.
 #include "exactff/view.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -8,17 +10,16 @@
 #include <optional>
 
 #include "cli/command.h"
-#include "cli/exit_code.h"
 #include "cli/one_receiver.h"
 #include "cli/output.h"
 #include "cli/point.h"
-#include "cli/text_table.h"
+#include "cli/process.h"
 #include "exactff/render.h"
 #include "exactff/scene_files.h"
 #include "exactff/version.h"
 #include "flags/file_options.h"
 #include "flags/scene.h"
-#include "flags/vector.h"
+#include "flags/values.h"
 #include "text/csv_row.h"
 #include "text/json_document.h"
 #include "text/names.h"
@@ -77,15 +78,6 @@ void print_plain(const ViewArguments& args, const Scene& scene, const WholeView&
   });
 }
 
-std::string place_text(const Vec3& v) {
-  return '(' + text::shortest(v.x) + ", " + text::shortest(v.y) + ", " + text::shortest(v.z) + ')';
-}
-
-std::string receiver_text(const Scene& scene, const Receiver& receiver) {
-  const std::string on = receiver.on.empty() ? "" : ", on " + scene.name_of(receiver.on);
-  return place_text(receiver.point) + ", normal " + place_text(receiver.normal) + on;
-}
-
 // A stacked patch has two values; the form factor is not 0.
 std::string status_text(const SeenPatch& patch) {
   if (!is_stacked(patch)) return std::string(to_string(patch.share.status));
@@ -122,15 +114,12 @@ void print_table(const ViewArguments& args, const Scene& scene, const Receiver& 
   }
   Enclosure fronts;
   for (const SeenPatch& patch : seen.patches) fronts += patch.share.enclosure;
-  std::cout << "\nfronts  "
-            << sum_text(fronts, args.digits)
-                   .value_or("between " + text::shortest(fronts.lower()) + " and " + text::shortest(fronts.upper()))
-            << "  (of " << text::counted(seen.patches.size(), "patch", "patches")
+  std::cout << "\nfronts  " << sum_words(fronts, args.digits) << "  (of "
+            << text::counted(seen.patches.size(), "patch", "patches")
             << "; with (back), backs of faces, and (open), directions that meet nothing: 1)\n";
   if (stacked) {
-    std::cout
-        << "stacked: in one plane with the front of another patch, which comes first in the file and has the share "
-           "of the view; each keeps its full form factor\n";
+    std::cout << "stacked: in one plane with the front of another patch, which comes first in the file and has the "
+                 "share of the view; each keeps its full form factor\n";
   }
 }
 
@@ -243,12 +232,12 @@ void write_files(const ViewArguments& args, const Scene& scene, const Receiver& 
 // "it sees 6 patches instead of 0", or the first share that differs. Empty if none does.
 std::string change_of_view(const Scene& scene, const WholeView& here, const WholeView& there) {
   if (here.patches.size() != there.patches.size()) {
-    return "it sees " + text::counted(there.patches.size(), "patch", "patches") + " instead of " +
-           std::to_string(here.patches.size());
+    return fmt::format("it sees {} instead of {}", text::counted(there.patches.size(), "patch", "patches"),
+                       here.patches.size());
   }
   const auto change = [](const std::string& name, const ViewShare& a, const ViewShare& b) {
     if (a.value == b.value) return std::string();
-    return name + " is " + text::short_number(b.value) + " instead of " + text::short_number(a.value);
+    return fmt::format("{} is {} instead of {}", name, text::short_number(b.value), text::short_number(a.value));
   };
   std::vector<std::string> changes{change(kBack, here.back, there.back), change(kOpen, here.open, there.open)};
   for (std::size_t p = 0; p < here.patches.size(); ++p) {
@@ -305,10 +294,10 @@ void add_output_flags(CLI::App& app, ViewArguments& args) {
   app.add_option("--precision-cap", args.precision_cap, "Largest precision, in bits, of the contour integral")
       ->check(CLI::Range(32, 1 << 24))
       ->capture_default_str();
-  auto* plain = app.add_flag("--plain", args.plain,
-                             "Print one line per patch that is seen: name, tab, share of the view; then (back), "
-                             "(open) and, of a buried receiver, (buried). The lines add up to 1. The share is the form "
-                             "factor, unless patches are stacked");
+  auto* plain = app.add_flag(
+      "--plain", args.plain,
+      "Print one line per patch that is seen: name, tab, share of the view; then (back), (open) and, of a buried "
+      "receiver, (buried). The lines add up to 1. The share is the form factor, unless patches are stacked");
   auto* json = app.add_flag("--json", args.json, "Print JSON");
   auto* csv = app.add_flag("--csv", args.csv, "Print CSV");
   plain->excludes(json)->excludes(csv);
@@ -316,26 +305,22 @@ void add_output_flags(CLI::App& app, ViewArguments& args) {
 }
 
 void add_file_flags(CLI::App& app, ViewArguments& args) {
-  CLI::Option* svg = app.add_option("--svg", args.svg,
-                                    "Draw all that the receiver sees above its horizon, with its normal in the middle")
-                         ->type_name("FILE")
-                         ->check(flags::is_written(flags::Format::kSvg));
+  CLI::Option* svg = flags::add_written(
+      app, "--svg", args.svg, "Draw all that the receiver sees above its horizon, with its normal in the middle",
+      flags::Format::kSvg);
   app.add_option("--projection", args.projection,
                  "nusselt: areas in the picture are form factors times pi; fisheye: stereographic, which keeps angles")
       ->capture_default_str()
       ->check(CLI::IsMember({"nusselt", "fisheye"}))
       ->needs(svg);
-  CLI::Option* mesh =
-      app.add_option("--mesh", args.mesh,
-                     "Write the visible regions in space, cut into triangles: .obj, .ply, .stl, .off, .vs3, .vtp or "
-                     ".vtu; --json then has their exact shares of the faces")
-          ->type_name("FILE")
-          ->check(flags::is_written(flags::Format::kMesh, flags::Beside::kMaterials));
+  CLI::Option* mesh = flags::add_written(app, "--mesh", args.mesh,
+                                         "Write the visible regions in space, cut into triangles: .obj, .ply, .stl, "
+                                         ".off, .vs3, .vtp or .vtu; --json then has their exact shares of the faces",
+                                         flags::Format::kMesh, flags::Beside::kMaterials);
   app.add_flag("--force", args.force, "Replace an existing file of --mesh")->needs(mesh);
-  flags::add_vector_option(
-      app, "--up", args.up,
-      "The direction that points upwards in the picture (default: 0 0 1 if more area of fronts looks "
-      "along +z than along +y; else 0 1 0)")
+  flags::add_vector_option(app, "--up", args.up,
+                           "The direction that points upwards in the picture (default: 0 0 1 if more area of fronts "
+                           "looks along +z than along +y; else 0 1 0)")
       ->needs(svg);
 }
 
@@ -350,8 +335,7 @@ Command add_view(CLI::App& app) {
       "before a back, and of several fronts the first in the file. The others are stacked: each keeps its full form\n"
       "factor. Fronts count for their patch, backs for (back), and directions that meet nothing for (open). Together\n"
       "they are exactly 1. A receiver on a part of a face that a closed solid stands on sees nothing: (buried) is 1.\n"
-      " Patches that are not listed have a form factor of exactly 0; --plain leaves out stacked "
-      "ones\n"
+      " Patches that are not listed have a form factor of exactly 0; --plain leaves out stacked ones\n"
       "that are not seen. The exit code is 3 if a value is not certified within --precision-cap.\n"
       "\n"
       "Example:\n"

@@ -1,21 +1,23 @@
 #include "cli/view_factor_words.h"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <functional>
-#include <string>
-#include <utility>
-#include <vector>
+#include <iostream>
 
 #include "cli/output.h"
 #include "exactff/slips.h"
-#include "flags/lists.h"
+#include "flags/values.h"
+#include "matrix/entry_jobs.h"
+#include "text/escape.h"
 #include "text/names.h"
 #include "text/phrases.h"
 #include "text/text_lines.h"
 
 namespace exactff::cli {
-
 namespace {
 
 struct Wide {
@@ -63,13 +65,13 @@ std::string words_of_wide(const Scene& scene, const matrix::Matrix& matrix, cons
   std::vector<std::string> named;
   for (const Wide& one : wide) {
     if (named.size() == kMostNamed) break;
-    named.push_back(text::in_quotes(scene.name_of(matrix.factors.from[one.row])) + " to " + one.to + " (" +
-                    words_of(one, accuracy) + ")");
+    named.push_back(fmt::format("{} to {} ({})", text::in_quotes(scene.name_of(matrix.factors.from[one.row])), one.to,
+                                words_of(one, accuracy)));
   }
   if (wide.size() > kMostNamed) named.emplace_back("...");
-  return text::counted(static_cast<std::uint64_t>(wide.size()), "entry", "entries") +
-         (wide.size() == 1 ? " is" : " are") + " wider than the accuracy " + text::shortest(accuracy) + ": " +
-         text::joined(named, ", ");
+  return fmt::format("{} wider than the accuracy {}: {}",
+                     text::counted(static_cast<std::uint64_t>(wide.size()), "entry is", "entries are"),
+                     text::shortest(accuracy), text::joined(named, ", "));
 }
 
 std::string why(Limit limit, std::size_t budget) {
@@ -92,8 +94,8 @@ std::string what_helps(Limit limit, bool certify) {
   switch (limit) {
     case Limit::kBudget:
     case Limit::kNone:
-      return std::string("give more by --budget, ask for less by --accuracy, ") +
-             (certify ? "divide patches by --divide" + estimates : "or divide patches by --divide");
+      return fmt::format("give more by --budget, ask for less by --accuracy, {}divide patches by --divide{}",
+                         certify ? "" : "or ", certify ? estimates : "");
     case Limit::kCrowd:
       return "divide patches by --divide" + (certify ? estimates : "");
     case Limit::kRounding:
@@ -154,6 +156,47 @@ std::vector<Problem> problems_of_width(const Scene& scene, const matrix::Matrix&
                         .suggestion = what_helps(limit, options.certify)});
   }
   return problems;
+}
+
+void LateNote::follow(const Progress& progress) {
+  if (!done_before_) done_before_ = progress.done;
+  if (progress.total <= *done_before_) return;
+  share_done_ =
+      static_cast<double>(progress.done - *done_before_) / static_cast<double>(progress.total - *done_before_);
+}
+
+void LateNote::tell_if_late() {
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+  if (elapsed.count() < kLate || told_) return;
+  const double left = elapsed.count() * (1.0 - share_done_) / share_done_;  // infinite as long as nothing is done
+  if (left < kLate) return;
+  const std::string slow = matrix::EntryJobs::slow_of_thread(kSlow);
+  if (slow.empty() && elapsed.count() < kLate + kSlow) return;  // another thread may have a name to tell
+  if (told_.exchange(true)) return;
+  const std::string what = slow.empty() ? "" : "It is slow " + text::printable(slow) + ". ";
+  const std::string clear_line = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
+  std::cerr << clear_line + "note: this takes more than " + text::short_number(kLate) + " s. " + what + text_ + '\n';
+}
+
+std::string words_on_speed(const matrix::Request& request) {
+  const ViewFactorOptions& factors = request.options.factors;
+  constexpr double kCoarse = 1e-3;
+  constexpr double kFine = 1e-9;  // below, certified entries cost less (validation/view_factors.md)
+  std::vector<std::string> ways;
+  if (factors.certify && factors.accuracy >= kFine) ways.emplace_back("no --certify, so that errors are estimated");
+  if (!factors.certify && factors.accuracy < kFine)
+    ways.emplace_back("--certify, which needs fewer cells for so little");
+  if (factors.both_directions) ways.emplace_back("no --both-directions");
+  if (factors.accuracy < kCoarse) {
+    ways.push_back(
+        fmt::format("--accuracy {} instead of {}", text::short_number(kCoarse), text::shortest(factors.accuracy)));
+  }
+  ways.push_back(fmt::format("a smaller --budget than {}, for wider entries", factors.budget));
+  if (request.options.backs) ways.emplace_back("no --backs");
+  if (request.from.size() > 1) {
+    ways.push_back(fmt::format("fewer rows than {} by --from", request.from.size()));
+  }
+  return "Faster: " + text::joined(ways, "; ");
 }
 
 }  // namespace exactff::cli

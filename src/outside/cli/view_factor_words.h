@@ -2,12 +2,17 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exactff/matrix.h"
+#include "exactff/progress.h"
 #include "flags/scene.h"
 
 namespace exactff::cli {
@@ -34,5 +39,43 @@ inline constexpr const char* kBudgetHelp =
 
 inline constexpr const char* kTwoSidedHelp =
     "Patches or faces, named as in --from, whose backs are patches as well, NAME (back), with the same Kd and Ke";
+
+// --- what `exactff matrix` says while it takes long: what would be faster ---
+
+// A note that is printed once, on stderr, if the work is neither done after some seconds nor soon will be. It names the
+// pair that takes long.
+class LateNote {
+ public:
+  explicit LateNote(std::string text) : text_(std::move(text)) {}
+
+  void follow(const Progress& progress);  // from one thread at a time
+  void tell_if_late();                    // from any thread, every few milliseconds
+
+ private:
+  static constexpr double kLate = 5.0, kSlow = 1.0;  // seconds, of all the work and of a pair
+
+  const std::string text_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::atomic<double> share_done_ = 0.0;
+  std::optional<std::size_t> done_before_;  // by a run that is continued
+  std::atomic<bool> told_ = false;
+};
+
+// Of these hooks (Hooks, jobs::RowHooks), those that also serve the note. Keeps a reference to it.
+template <class Kind>
+Kind with_note(LateNote& note, Kind hooks) {
+  hooks.progress = [&note, show = std::move(hooks.progress)](const Progress& progress) {
+    note.follow(progress);
+    show(progress);
+  };
+  hooks.cancelled = [&note, is_cancelled = std::move(hooks.cancelled)] {
+    note.tell_if_late();
+    return is_cancelled();
+  };
+  return hooks;
+}
+
+// "Faster: --accuracy 0.001 instead of 1e-06; a smaller --budget than 100000, for wider entries; ..."
+[[nodiscard]] std::string words_on_speed(const matrix::Request& request);
 
 }  // namespace exactff::cli

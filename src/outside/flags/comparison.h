@@ -1,18 +1,18 @@
-// The flags of a comparison of methods on one scene: those of `exactff compare`, and of a scene line in a study file.
+// The flags of a comparison of methods on one scene: those of `exactff compare`, and of a scene line in a study file;
+// and the study file, which describes a study of several scenes.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "exactff/error.h"
 #include "exactff/study.h"
-#include "flags/camera.h"
-#include "flags/engine.h"
 #include "flags/receivers.h"
 #include "flags/scene.h"
-#include "flags/sources.h"
+#include "report/plan.h"
 
 namespace exactff::flags {
 
@@ -48,7 +48,42 @@ struct Comparison {
 // "cornell_box.obj" for a path, "teapot:segments=8" for a model.
 [[nodiscard]] std::string short_name(const std::string& scene);
 
-// The flags again, each preceded by a blank and quoted for a shell. SCENE is not among them.
-[[nodiscard]] std::string command_words(const ComparisonArguments& args);
+// --- the study file ---
+//
+//   # a comment
+//   title Form factors of rooms
+//   scene cornell_box.obj --on floor --grid 32x32 --title "Cornell box"
+//   scene @karkanis:n=200 --on ... --unless-abridged
+//   experiment karkanis-times nettle-rule
+//   experiment closure --unless-abridged
+//
+// A scene line has the words and flags that `exactff compare` takes for one scene. Files are
+// looked up in the folder of the study.
+
+[[nodiscard]] bool is_study_file(const std::string& path);  // by its extension, .study
+
+// Reads a .study file (data/README.md) and loads its scenes. Throws one InputError with the line of every problem.
+[[nodiscard]] report::Plan read_study_file(const std::filesystem::path& file, const report::Effort& effort = {});
+
+// --- its syntax ---
+
+struct StudyLine {
+  std::size_t number = 0;
+  std::vector<std::string> words;  // without the keyword
+};
+
+struct StudyFile {
+  std::string title;
+  std::vector<StudyLine> scenes;
+  std::vector<StudyLine> experiments;
+};
+
+// Throws InputError with everything that is wrong in the syntax of the file. Flags are checked later, by the code that
+// parses them.
+[[nodiscard]] StudyFile parse_study_file(const std::filesystem::path& path);
+
+// The words of a line. Blanks separate words; "..." or '...' encloses text with blanks. Throws InputError if a quote is
+// not closed.
+[[nodiscard]] std::vector<std::string> split_words(std::string_view line, const std::string& file, std::size_t number);
 
 }  // namespace exactff::flags

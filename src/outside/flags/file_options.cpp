@@ -1,5 +1,7 @@
 #include "flags/file_options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <system_error>
 
@@ -179,8 +181,8 @@ std::string better_name(const CLI::App& command, const GivenFile& one, const std
     if (!mark || mark->use != Use::kFile) continue;
     const std::span<const std::string_view> extensions = extensions_of(mark->format);
     if (std::ranges::find(extensions, extension) == extensions.end()) continue;
-    const std::string both = one.option->get_required() ? one.named.called + " FILE" + example + ' ' : "";
-    return "write " + both + name_of(*other) + ' ' + text::shell_word(one.named.file.string());
+    const std::string both = one.option->get_required() ? fmt::format("{} FILE{} ", one.named.called, example) : "";
+    return fmt::format("write {}{} {}", both, name_of(*other), text::shell_word(one.named.file.string()));
   }
   return "name a " + example + " file";
 }
@@ -195,10 +197,9 @@ void require_own_format(const CLI::App& command, const GivenFile& one) {
   };
   const auto other = std::ranges::find_if(formats(), has_it);
   if (has_it(*own) || other == formats().end()) return;
-  text::refuse(
-      one.named.file,
-      "is named as " + std::string(other->name) + ", and " + one.named.called + " writes " + std::string(own->name),
-      "other programs go by the name", better_name(command, one, extension));
+  text::refuse(one.named.file,
+               fmt::format("is named as {}, and {} writes {}", other->name, one.named.called, own->name),
+               "other programs go by the name", better_name(command, one, extension));
 }
 
 }  // namespace
@@ -206,8 +207,7 @@ void require_own_format(const CLI::App& command, const GivenFile& one) {
 CLI::Validator is_read() { return mark(kRead); }
 CLI::Validator is_written_folder() { return mark(kFolder); }
 CLI::Validator is_written(Format format, Beside beside) {
-  return mark(std::string(kWritten) + std::to_string(static_cast<int>(format)) + ' ' +
-              std::to_string(static_cast<int>(beside)));
+  return mark(fmt::format("{}{} {}", kWritten, static_cast<int>(format), static_cast<int>(beside)));
 }
 
 std::size_t begin_of_mark(std::string_view type_name) {

@@ -44,6 +44,17 @@ enum class Beside {
 [[nodiscard]] CLI::Validator is_written(Format format, Beside beside = Beside::kNothing);
 [[nodiscard]] CLI::Validator is_written_folder();  // with a journal FOLDER.part
 
+// Options whose value is FILE, with their mark.
+template <class Target>
+CLI::Option* add_read(CLI::App& app, const std::string& flag, Target& file, const std::string& meaning) {
+  return app.add_option(flag, file, meaning)->type_name("FILE")->check(is_read());
+}
+template <class Target>
+CLI::Option* add_written(CLI::App& app, const std::string& flag, Target& file, const std::string& meaning,
+                         Format format, Beside beside = Beside::kNothing) {
+  return app.add_option(flag, file, meaning)->type_name("FILE")->check(is_written(format, beside));
+}
+
 struct FileMark {
   enum class Use { kRead, kFile, kFolder };
   Use use = Use::kRead;

@@ -1,15 +1,19 @@
 #include "flags/receivers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <iterator>
+#include <set>
 #include <string_view>
 #include <unordered_set>
 #include <utility>
 
 #include "flags/file_options.h"
-#include "flags/lists.h"
+#include "flags/values.h"
+#include "scene/selections.h"
 #include "text/escape.h"
 #include "text/names.h"
 #include "text/number_text.h"
@@ -112,7 +116,7 @@ ChosenReceivers on_faces(const ReceiverArguments& args, const Scene& scene, Grid
   }
   const std::uint64_t count = sample_count(args), seed = sample_seed(args);
   return {sample_receivers(scene, faces, count, seed),
-          on + ", " + text::counted(count, "sample") + ", seed " + std::to_string(seed)};
+          fmt::format("{}, {}, seed {}", on, text::counted(count, "sample"), seed)};
 }
 
 // What --on says of receivers that come from a file.
@@ -136,7 +140,7 @@ ChosenReceivers in_image(const ReceiverArguments& args, const Scene& scene) {
   const exr::Frame& frame = gbuffer.frame;
   const auto add = [&](exr::Mark mark, const std::string& what) {
     if (const std::size_t count = frame.count(mark); count > 0)
-      chosen.description += ", " + std::to_string(count) + ' ' + what;
+      chosen.description += fmt::format(", {} {}", count, what);
   };
   add(exr::Mark::kNothing, "without a hit");
   add(exr::Mark::kNoFace, "without a face");
@@ -158,7 +162,7 @@ ChosenReceivers in_file(const ReceiverArguments& args, const Scene& scene) {
   if (!face) return chosen;
   chosen.description += ", on " + args.on.front();
   chosen.without_face = place_on_faces(scene, chosen.receivers, face->tolerance).size();
-  if (chosen.without_face > 0) chosen.description += ", " + std::to_string(chosen.without_face) + " without a face";
+  if (chosen.without_face > 0) chosen.description += fmt::format(", {} without a face", chosen.without_face);
   return chosen;
 }
 
@@ -188,12 +192,8 @@ std::optional<AutoFace> auto_face(const std::string& on, const Scene& scene) {
 }
 
 void add_receiver_options(CLI::App& app, ReceiverArguments& args) {
-  app.add_option("--on", args.on,
-                 std::string("Patch or face on which the receivers lie") + kNamesHelp +
-                     "; all: every patch; with --receivers: auto or auto:DISTANCE finds the face of each receiver")
-      ->type_name("NAME[:K]")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_names(app, "--on", args.on, "Patch or face on which the receivers lie",
+            "; all: every patch; with --receivers: auto or auto:DISTANCE finds the face of each receiver");
   app.add_option("--grid", args.grid,
                  "A receiver in the centre of each cell of a grid on each surface: columns x rows, such as 32x32")
       ->type_name("UxV");
@@ -204,12 +204,9 @@ void add_receiver_options(CLI::App& app, ReceiverArguments& args) {
   app.add_option("--samples", args.samples, "N receivers at random, uniformly by area")->type_name("N");
   app.add_option("--sample-seed", args.sample_seed, "Seed of --samples; it does not affect rays (default: 1)")
       ->type_name("S");
-  app.add_option("--receivers", args.file,
-                 "CSV file with the columns id,x,y,z,nx,ny,nz,on, or a truth file, instead of --on; - for standard "
-                 "input; or an "
-                 "EXR file with the visible point and normal of each pixel")
-      ->type_name("FILE")
-      ->check(is_read());
+  add_read(app, "--receivers", args.file,
+           "CSV file with the columns id,x,y,z,nx,ny,nz,on, or a truth file, instead of --on; - for standard input; or "
+           "an EXR file with the visible point and normal of each pixel");
   app.add_option("--position-layer", args.layers.position,
                  "Layer of the points in an EXR file, in world coordinates (default: position or P)")
       ->type_name("LAYER");
@@ -276,22 +273,61 @@ std::vector<Problem> warnings_of_receivers(const ChosenReceivers& chosen) {
            .suggestion = "--on auto:DISTANCE looks further away"}};
 }
 
-std::string command_words(const ReceiverArguments& args) {
-  std::string words;
-  const auto add = [&](const char* flag, const std::string& value) {
-    if (!value.empty()) words += std::string(" ") + flag + ' ' + text::shell_word(value);
-  };
-  for (const std::string& name : args.on) add("--on", name);
-  add("--grid", args.grid);
-  if (args.vertices) words += " --vertices";
-  if (args.centres) words += " --centres";
-  if (args.per_face) words += " --per-face";
-  add("--samples", args.samples);
-  add("--sample-seed", args.sample_seed);
-  add("--receivers", args.file);
-  add("--position-layer", args.layers.position);
-  add("--normal-layer", args.layers.normal);
-  return words;
+// --- sources ---
+
+namespace {
+
+void refuse_sky(const Scene& scene, std::vector<std::string> names) {
+  if (!take_sky(scene, names)) return;
+  text::refuse("--source: the sky is not a source of this command", "its sources are patches",
+               "exactff view prints the sky's form factor as (open); truth and render take sky as a source");
+}
+
+void add_option(CLI::App& app, SourceArguments& args, const std::string& sky) {
+  add_names(app, "--source", args.names, "Source patch or face",
+            "; all: every patch" + sky + " (default: every emitting patch)");
+}
+
+}  // namespace
+
+void add_source_options(CLI::App& app, SourceArguments& args) { add_option(app, args, ""); }
+
+void add_source_options_under_sky(CLI::App& app, SourceArguments& args) {
+  add_option(app, args, "; sky: what is open, all directions that meet nothing, with a radiosity of 1");
+}
+
+std::vector<Selection> sources_of(const SourceArguments& args, const Scene& scene) {
+  refuse_sky(scene, args.names);
+  std::vector<Selection> sources = selections_named(scene, args.names);
+  std::set<std::pair<PatchId, std::optional<FaceId>>> named;
+  for (const Selection& source : sources) {
+    if (named.emplace(source.patch, source.face).second) continue;
+    throw InputError({.what = "--source: '" + scene.name_of(source) + "' is named twice",
+                      .why = "its light would count twice",
+                      .suggestion = "give it once"});
+  }
+  return sources;
+}
+
+SourcesUnderSky sources_under_sky(const SourceArguments& args, const Scene& scene) {
+  SourceArguments patches = args;
+  const bool sky = take_sky(scene, patches.names);
+  return {sources_of(patches, scene), sky};
+}
+
+std::string note_on_sources_without_emission(const Scene& scene, const std::vector<Selection>& sources) {
+  constexpr std::size_t kNamed = 5;
+  std::vector<std::string> names;
+  std::size_t count = 0;
+  for (const Selection& source : sources) {
+    if (emits(scene, source)) continue;
+    if (++count <= kNamed) names.push_back(text::in_quotes(scene.name_of(source)));
+  }
+  if (count == 0) return {};
+  if (count > kNamed) names.push_back(std::to_string(count - kNamed) + " more");
+  return count == 1
+             ? names.front() + " emits nothing (Ke 0): as a named source it counts with a radiosity of 1"
+             : text::enumerate(names) + " emit nothing (Ke 0): as named sources they count with a radiosity of 1 each";
 }
 
 }  // namespace exactff::flags

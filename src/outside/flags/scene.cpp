@@ -1,25 +1,21 @@
 #include "flags/scene.h"
 
-#include <iostream>
+#include <fmt/format.h>
 
+#include <iostream>
+#include <utility>
+
+#include "exactff/matrix.h"
 #include "exactff/models.h"
 #include "exactff/scene_files.h"
 #include "flags/file_options.h"
-#include "flags/lists.h"
+#include "kernel/vec.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
 namespace exactff::flags {
 namespace {
-
-CLI::Option* add_names(CLI::App& app, const std::string& flag, std::vector<std::string>& names,
-                       const std::string& meaning) {
-  return app.add_option(flag, names, meaning + kNamesHelp)
-      ->type_name("NAME[:K]")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-}
 
 std::vector<Selection> changed(const Scene& scene, const std::string& flag, const std::vector<std::string>& names) {
   std::vector<Selection> selections = selections_named(scene, names);
@@ -62,11 +58,10 @@ void SceneArguments::add_to(CLI::App& app) {
 }
 
 void SceneArguments::add_divide_to(CLI::App& app) {
-  app.add_option(
-         "--divide", divide,
-         "Cut the faces into cells with sides of at most this length, each a patch NAME:k; NAME means all of them. A "
-         "cell that is not exactly planar becomes two triangles, whose common side may be longer. In --flip and "
-         "--transparent, NAME:k is a face of the scene that is cut")
+  app.add_option("--divide", divide,
+                 "Cut the faces into cells with sides of at most this length, each a patch NAME:k; NAME means all of "
+                 "them. A cell that is not exactly planar becomes two triangles, whose common side may be longer. In "
+                 "--flip and --transparent, NAME:k is a face of the scene that is cut")
       ->type_name("LENGTH")
       ->check(is_positive);
 }
@@ -86,14 +81,99 @@ Scene SceneArguments::load() const {
   return divide ? divided_with_note(scene, *divide) : std::move(scene);
 }
 
-std::string command_words(const SceneArguments& args) {
-  std::string line;
-  if (args.patches != "groups") line += " --patches " + text::shell_word(args.patches);
-  if (args.skip_bad_faces) line += " --skip-bad-faces";
-  for (const std::string& names : args.flip) line += " --flip " + text::shell_word(names);
-  for (const std::string& names : args.transparent) line += " --transparent " + text::shell_word(names);
-  if (args.divide) line += " --divide " + text::shortest(*args.divide);
-  return line;
+// --- the scene that a file of radiosities belongs to ---
+
+namespace {
+
+std::optional<double> agreed_length(const std::optional<double>& flag, const radiosity::SolutionFile& file) {
+  const std::optional<double>& length = file.origin.divided;
+  if (!flag || flag == length) return length;
+  text::refuse(file.file,
+               length ? "is of the scene divided by " + text::shortest(*length) : "is of the undivided scene",
+               "--divide " + text::shortest(*flag) + " makes other patches",
+               "leave out --divide, or compute the radiosities with it");
+}
+
+// What cannot be done to this scene is what the file wants, not the user.
+Scene made_as_in(const radiosity::SolutionFile& file, SceneArguments scene) {
+  const std::optional<double> length = agreed_length(std::exchange(scene.divide, {}), file);
+  const std::vector<std::string>& two_sided = file.origin.two_sided;
+  Scene made = scene.load();
+  try {
+    if (length) made = divided_with_note(made, *length);
+    if (!two_sided.empty()) made = matrix::with_two_sided(made, selections_named(made, two_sided));
+  } catch (const InputError& error) {
+    text::refuse(file.file, "holds radiosities of a scene that was changed as this one cannot be",
+                 error.problems().front().what, "give the scene and the flags that `exactff radiosity` was given");
+  }
+  return made;
+}
+
+}  // namespace
+
+void SolutionArgument::add_to(CLI::App& app) {
+  add_read(app, "--radiosity", file,
+           "Light after all bounces: radiosities of all patches, by `exactff radiosity SCENE -o FILE`; --divide and "
+           "--two-sided of that command are taken from the file");
+}
+
+LitScene load(const SceneArguments& scene, const SolutionArgument& solution) {
+  if (!solution.is_given()) return {scene.load(), std::nullopt};
+  const radiosity::SolutionFile file = radiosity::read_solution(solution.file);
+  Scene made = made_as_in(file, scene);
+  radiosity::Radiosities radiosities = radiosity::radiosities_of(made, file);
+  return {std::move(made), std::move(radiosities)};
+}
+
+// --- camera ---
+
+namespace {
+
+bool is_along(const Vec3& direction, const Vec3& axis) {
+  constexpr double kParallel = 1e-6;
+  return !(kernel::max_norm(kernel::cross(kernel::unit(direction), axis)) > kParallel);
+}
+
+}  // namespace
+
+void CameraArguments::add_to(CLI::App& app, const std::string& eye_meaning, const std::string& look_meaning) {
+  add_vector_option(app, "--eye", eye, eye_meaning);
+  add_vector_option(app, "--look", look, look_meaning);
+  add_vector_option(app, "--up", up,
+                    "The direction that points upwards in the picture (default: 0 0 1 if more area of fronts looks "
+                    "along +z than along +y; else 0 1 0)");
+  app.add_option("--fov", fov,
+                 fmt::format("Vertical angle of view in degrees (default: {}; {} where the program places a camera "
+                             "inside a closed room)",
+                             text::shortest(render::Camera{}.fov), text::shortest(render::kWideFov)))
+      ->type_name("DEGREES")
+      ->check(is_positive);
+}
+
+bool CameraArguments::is_placed() const {
+  if (is_given(eye) == is_given(look)) return is_given(eye);
+  text::refuse(is_given(eye) ? "--eye is given without --look" : "--look is given without --eye",
+               "a camera stands at one point and looks at another", "give both, or neither for a view of the whole");
+}
+
+render::CameraWishes CameraArguments::wishes() const {
+  render::CameraWishes wishes{.fov = fov};
+  if (!is_given(up)) return wishes;
+  wishes.up = vector_of(up, "--up");
+  if (wishes.up == Vec3{}) {
+    text::refuse("--up is (0, 0, 0)", "nothing then says which side of the picture is up", "give a direction");
+  }
+  return wishes;
+}
+
+render::Camera CameraArguments::camera(const Scene& scene) const {
+  render::Camera camera{.eye = vector_of(eye, "--eye"), .look = vector_of(look, "--look")};
+  camera.up = is_given(up) ? wishes().up : render::upwards(scene);
+  if (!is_given(up) && is_along(kernel::difference(camera.look, camera.eye), camera.up)) {
+    camera.up = {0.0, camera.up.z, camera.up.y};
+  }
+  if (fov) camera.fov = *fov;
+  return camera;
 }
 
 }  // namespace exactff::flags

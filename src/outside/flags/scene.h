@@ -1,4 +1,4 @@
-// The flags of every command that reads a scene.
+// Flags that many commands share: the scene, its radiosities, a camera, the engine.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,7 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "exactff/exact.h"
+#include "exactff/radiosity.h"
+#include "exactff/render.h"
 #include "exactff/scene.h"
+#include "flags/values.h"
 
 namespace exactff::flags {
 
@@ -36,7 +40,48 @@ struct SceneArguments {
 // Prints the note on standard error.
 [[nodiscard]] Scene divided_with_note(const Scene& scene, double length);
 
-// The flags again, each preceded by a blank and quoted for a shell. SCENE is not among them.
-[[nodiscard]] std::string command_words(const SceneArguments& args);
+// The flag --radiosity.
+struct SolutionArgument {
+  std::string file;  // empty: not given
+
+  void add_to(CLI::App& app);
+  [[nodiscard]] bool is_given() const { return !file.empty(); }
+};
+
+struct LitScene {
+  Scene scene;
+  std::optional<radiosity::Radiosities> radiosities;
+};
+
+// Loads the scene. If a solution is given, divides it and makes its faces two-sided as the file says, and takes the
+// radiosities. Throws InputError if they are of another scene, or if --divide has another length.
+[[nodiscard]] LitScene load(const SceneArguments& scene, const SolutionArgument& solution);
+
+struct CameraArguments {
+  ThreeNumbers eye, look, up;
+  std::optional<double> fov;
+
+  void add_to(CLI::App& app, const std::string& eye_meaning, const std::string& look_meaning);
+  // Whether --eye and --look are given. Throws InputError if only one of them is.
+  [[nodiscard]] bool is_placed() const;
+  // Requires both. Without --up, render::upwards(scene) points upwards or, in a view along it, the other axis.
+  [[nodiscard]] render::Camera camera(const Scene& scene) const;
+  [[nodiscard]] render::CameraWishes wishes() const;
+};
+
+struct EngineArgument {
+  std::string name = "edges";
+
+  void add_to(CLI::App& app) {
+    app.add_option("--engine", name,
+                   "How the visible region is found: edges (fast), boolean (Boolean set operations, the reference) or "
+                   "both (run both and compare); it does not affect the values")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"edges", "boolean", "both"}));
+  }
+  [[nodiscard]] Engine engine() const {
+    return name == "both" ? Engine::kBoth : name == "boolean" ? Engine::kBoolean : Engine::kEdges;
+  }
+};
 
 }  // namespace exactff::flags

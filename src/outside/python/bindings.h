@@ -6,17 +6,22 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "exactff/batch.h"
 #include "exactff/exact.h"
+#include "exactff/progress.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
 
@@ -70,6 +75,57 @@ class ArrayReceivers {
  private:
   py::detail::unchecked_reference<double, 2> points_, normals_;
   py::detail::unchecked_reference<std::int64_t, 2> on_;
+};
+
+// Ctrl-C and progress while the library computes without the GIL: hooks for work that the thread calls which made this
+// object. Signals are looked at in that thread; Python handles them in its main thread alone. What the handler or the
+// progress function raises ends the work: afterwards, rethrow() raises it instead of Cancelled.
+class Interrupt {
+ public:
+  explicit Interrupt(py::object progress = py::none());
+  Interrupt(const Interrupt&) = delete;
+  Interrupt& operator=(const Interrupt&) = delete;
+
+  [[nodiscard]] const Hooks& hooks() const { return hooks_; }
+
+  // Calls the function without the GIL and with these hooks.
+  template <class Function>
+  auto run(const Function& function) {
+    if constexpr (std::is_void_v<decltype(function())>) {
+      call(function);
+      rethrow();
+    } else {
+      auto result = call(function);
+      rethrow();
+      return result;
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  template <class Function>
+  auto call(const Function& function) {
+    try {
+      const py::gil_scoped_release released;
+      const HooksOfThread during(hooks_);
+      return function();
+    } catch (const Cancelled&) {
+      rethrow();
+      throw;
+    }
+  }
+  [[nodiscard]] bool is_cancelled();
+  void tell(const Progress& progress);
+  void rethrow();
+  void keep(py::error_already_set&& error);
+
+  const std::thread::id caller_ = std::this_thread::get_id();
+  py::object progress_;
+  Clock::time_point looked_{};
+  std::atomic<bool> stop_{false};
+  std::optional<py::error_already_set> error_;
+  Hooks hooks_;
 };
 
 void bind_errors(py::module_& module);

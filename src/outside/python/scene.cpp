@@ -6,10 +6,9 @@
 #include "exactff/scene_files.h"
 #include "exactff/slips.h"
 #include "files/file.h"
-#include "flags/lists.h"
+#include "flags/values.h"
 #include "kernel/vec.h"
 #include "python/bindings.h"
-#include "python/interrupt.h"
 
 namespace exactff::python {
 

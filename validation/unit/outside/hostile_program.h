@@ -69,7 +69,6 @@ class HostileProgram : public testing::Test {
             {"info", room_},
             {"info", room_, "--json"},
             {"completion", "bash"},
-            {"manual"},
             {"stress", "--list"},
             {"check", truth, truth},
             {"check", truth, truth, "--github"},

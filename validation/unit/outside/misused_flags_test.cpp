@@ -1,6 +1,4 @@
-// What the program says to flags that are misspelt or were removed, or have the wrong number of numbers.
-#include "cli/misused_flags.h"
-
+// What the program says to flags that are misspelt or have the wrong number of numbers.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -67,21 +65,6 @@ TEST_F(MisusedFlags, TheNearestFlagIsSuggestedAndWordsKeepTheirOrder) {
   // Another error of the same line would only hide the cause.
   expect_refused({"point", scene, "--att", "200", "0", "400", "--normal", "0", "1", "0"},
                  "exactff point has no flag --att (the command line has '--att 200 0 400'); did you mean --at?");
-}
-
-TEST_F(MisusedFlags, RemovedFlagsTellWhatServesInstead) {
-  const std::string draft =
-      "exactff matrix no longer has --draft (entries in crowds are means of points now, as accurate as asked within "
-      "--budget); leave it out; a smaller --budget or a larger --accuracy makes it faster";
-  const std::string views =
-      "exactff matrix no longer has --views (entries in crowds are means of points now, as many as each needs); leave "
-      "it out; --budget limits the points of an entry";
-  expect_refused({"matrix", scene, "--draft"}, draft);
-  expect_refused({"matrix", scene, "--draft", "--views", "300", "--accuracy", "1e-3"}, draft + '\n' + views);
-  expect_refused({"matrix", scene, "--views=300"}, views);
-  expect_refused({"radiosity", scene, "--draft"},
-                 "exactff radiosity has no flag --draft (the command line has '--draft'); `exactff help radiosity` "
-                 "lists its flags");
 }
 
 TEST_F(MisusedFlags, AFlagIsNoNameNorFileOfAnother) {

@@ -1,4 +1,4 @@
-// Completions, manual page and help are written from the same option tables; the help serves as the reference.
+// Completion and help are written from the same option tables; the help serves as the reference.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -75,21 +75,6 @@ TEST(Completion, BashOffersEveryOptionThatHelpLists) {
   }
 }
 
-TEST(Completion, ZshAndFishKnowEveryOptionThatHelpLists) {
-  const std::string zsh = output_of({"completion", "zsh"});
-  const std::string fish = output_of({"completion", "fish"});
-  for (const std::string& command : commands()) {
-    const std::size_t in_zsh = zsh.find("\n      " + command + ")\n");
-    ASSERT_NE(in_zsh, std::string::npos) << command;
-    const std::string section = zsh.substr(in_zsh, zsh.find(";;", in_zsh) - in_zsh);
-    for (const std::string& option : options_in_help(command)) {
-      EXPECT_NE(section.find("'" + option + "["), std::string::npos) << command << ' ' << option;
-      const std::string flag = option.starts_with("--") ? " -l " + option.substr(2) : " -s " + option.substr(1);
-      EXPECT_TRUE(std::regex_search(fish, std::regex("from " + command + "'[^\n]*" + flag + " "))) << command << flag;
-    }
-  }
-}
-
 TEST(Completion, BashOffersCommandsFirst) {
   EXPECT_EQ(offered_by_bash({"exactff", ""}), commands());
   EXPECT_EQ(offered_by_bash({"exactff", "po"}), Offers{"point"});
@@ -132,31 +117,8 @@ TEST(Completion, BashOffersModelsAfterAnAtSign) {
   EXPECT_EQ(offered_by_bash({"exactff", "point", "@"}).size(), models::all_models().size());
 }
 
-TEST(Completion, ZshAndFishOfferTheSameNames) {
-  for (const char* shell : {"zsh", "fish"}) {
-    const std::string script = output_of({"completion", shell});
-    for (const char* names :
-         {"exact adaptive ", " hemicube ", "@teapot @forest", "karkanis-times meshing", " crack crack-ulp ",
-          "info point view matrix radiosity render compare truth merge check stress convert help"}) {
-      EXPECT_NE(script.find(names), std::string::npos) << shell << ": " << names;
-    }
-  }
-}
-
 TEST(Completion, RefusesAShellThatItDoesNotKnow) {
   EXPECT_EQ(run_program(EXACTFF_PROGRAM, {"completion", "csh"}).exit_code, 2);
-}
-
-TEST(Manual, NamesEveryCommandAndOption) {
-  const std::string page = std::regex_replace(output_of({"manual"}), std::regex(R"(\\-)"), "-");
-  for (const std::string& command : commands()) {
-    const std::size_t begin = page.find("\n.SH exactff " + command + "\n");
-    ASSERT_NE(begin, std::string::npos) << command;
-    const std::string section = page.substr(begin, page.find("\n.SH ", begin + 1) - begin);
-    for (const std::string& option : options_in_help(command)) {
-      EXPECT_NE(section.find("\\fB" + option + "\\fR"), std::string::npos) << command << ' ' << option;
-    }
-  }
 }
 
 TEST(Help, TellsChoicesDefaultsAndWhatIsRequired) {

@@ -1,6 +1,4 @@
 // What exactff matrix says while it takes long.
-#include "cli/speed_advice.h"
-
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -8,6 +6,7 @@
 #include <string>
 #include <thread>
 
+#include "cli/view_factor_words.h"
 #include "exactff/models.h"
 #include "support/program.h"
 

@@ -9,7 +9,7 @@
 #include <map>
 #include <thread>
 
-#include "flags/study_file.h"
+#include "flags/comparison.h"
 #include "page/gnuplot.h"
 #include "report/plan.h"
 #include "support/program.h"

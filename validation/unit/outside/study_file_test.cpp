@@ -1,8 +1,7 @@
 // The file that describes a study.
-#include "flags/study_file.h"
-
 #include <gtest/gtest.h>
 
+#include "flags/comparison.h"
 #include "report/plan.h"
 #include "support/program.h"
 

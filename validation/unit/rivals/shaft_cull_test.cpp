@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "adaptive/receiver_view.h"
+#include "adaptive/sampled_scene.h"
 #include "adaptive/shaft.h"
 #include "kernel/numbers.h"
 #include "support/random_scenes.h"

@@ -1,12 +1,12 @@
 // Arithmetic in double-double with running error bounds: numbers, vectors and angles.
+#include "contour/quick_arithmetic.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "contour/quick_angle.h"
-#include "contour/quick_vector.h"
 #include "generate/random.h"
 #include "support/random_scenes.h"
 #include "unit/solver/quick_contour_support.h"

@@ -33,17 +33,14 @@ except ImportError as error:
     ) from error
 
 from . import methods
-from ._check import (CheckReport, Distribution, Improvement, RowError, Scoreboard, Verdict, check,
-                     scoreboard)
-from ._errors import InputError, ModellingWarning, Problem
+from ._arguments import InputError, ModellingWarning, Problem
+from ._check import (check, CheckReport, Distribution, Improvement, RowError, scoreboard, Scoreboard, truth,
+                     TruthSummary, Verdict)
+from ._geometry import Contact, Finding, Material, Patch, Receivers, Report
 from ._pair import DerivativeStatus, Drawing, Enclosure, FormFactor, FormFactors, Gradient, Status, VertexGradient
-from ._radiosity import Balance, Radiosity, radiosity
-from ._receivers import Receivers
-from ._report import Contact, Finding, Material, Patch, Report
 from ._scene import Scene
-from ._truth import TruthSummary, truth
-from ._views import (PairOfPatches, Reciprocity, SeenPatch, Share, View, ViewFactor, ViewFactorMatrix, view, view_factor,
-                     view_factor_matrix)
+from ._views import (Balance, PairOfPatches, radiosity, Radiosity, Reciprocity, SeenPatch, Share, View, view,
+                     view_factor, view_factor_matrix, ViewFactor, ViewFactorMatrix)
 
 __version__ = _exactff.version
 

@@ -1,4 +1,4 @@
-"""Comparisons of other values with true ones."""
+"""Truth files, and comparisons of other values with true ones."""
 
 from __future__ import annotations
 
@@ -10,13 +10,56 @@ from typing import Any, Literal, Mapping, NamedTuple, Optional, Sequence, Union
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _exactff
-from ._errors import refuse
-from ._files import require_free
+from . import _arguments, _exactff
+from ._arguments import Names, Path, Progress, refuse, require_free, shown, warn
+from ._geometry import Receivers
 from ._pair import FormFactors, Status
-from ._receivers import Receivers
+from ._scene import Scene
 
-_Path = Union[str, "os.PathLike[str]"]
+
+class TruthSummary(NamedTuple):
+    """What :func:`truth` has written."""
+
+    rows: int
+    certified: int
+    zero: int
+    underflow: int
+    not_certified: int
+    resumed: int  #: rows that were already finished
+    seconds: float  #: wall time of computing the other rows
+
+
+def truth(scene: Scene, receivers: Receivers, path: Union[str, os.PathLike[str]], sources: Names = None, *,
+          unoccluded: bool = False, fraction: bool = False, unit_normals: bool = False, uv: bool = False,
+          gradient: bool = False,
+          existing: Literal["refuse", "resume", "replace"] = "refuse", threads: int = 0,
+          progress: Progress = None) -> TruthSummary:
+    """Writes a truth file: the bytes that ``exactff truth`` writes for the same scene, receivers and sources.
+
+    Parameters
+    ----------
+    sources : as in :meth:`Scene.form_factors`; the rows of "sky" are the last of each receiver
+    receivers : from :meth:`Scene.receivers`, :meth:`Scene.read_receivers` or :meth:`Scene.receivers_at`
+    unoccluded, fraction, unit_normals, uv, gradient : additional columns
+    existing : what to do if there is a file or a journal of an interrupted run: "refuse", "resume" or "replace"
+
+    After Ctrl-C or a crash, finished rows are kept in ``PATH.part``; ``existing="resume"`` continues.
+    """
+    if existing not in ("refuse", "resume", "replace"):
+        refuse(f"existing is {existing!r}", "", "choose 'refuse', 'resume' or 'replace'")
+    wanted = {"unoccluded": unoccluded, "visible_fraction": fraction, "unit_normals": unit_normals, "uv": uv,
+              "gradient": gradient}
+    count = _arguments.thread_count(threads)
+    require_free(path, "replace", scene._read)
+    with shown(progress, "row") as tell:
+        rows, by_status, resumed, seconds = _exactff.write_truth(
+            scene._scene, scene.name, receivers._list, receivers.name, scene._sources(sources, sky=True), os.fspath(path),
+            existing, [column for column, is_wanted in wanted.items() if is_wanted], count, tell)
+    certified, zero, underflow, not_certified = by_status
+    if not_certified:
+        warn(f"{not_certified} of {rows} rows are not certified")
+    return TruthSummary(rows, certified, zero, underflow, not_certified, resumed, seconds)
+
 
 
 class Distribution(NamedTuple):
@@ -96,13 +139,13 @@ class CheckReport:
         return f"<exactff.CheckReport of {self.rows} values: {result}>"
 
 
-def check(truth: Union[_Path, FormFactors, ArrayLike], values: Union[_Path, ArrayLike], *,
+def check(truth: Union[Path, FormFactors, ArrayLike], values: Union[Path, ArrayLike], *,
           max_abs: Optional[float] = None, max_rel: Optional[float] = None, rms: Optional[float] = None,
           eps_b: Optional[float] = None, quantiles: Optional[Mapping[float, float]] = None, per_source: bool = False,
           relative_floor: float = 0.0, worst: int = 10, truth_column: str = "", value_column: str = "",
           match: Literal["receiver", "position"] = "receiver", tolerance: float = 0.0, partial: bool = False,
-          receivers: Union[Receivers, Sequence[str]] = (), baseline: Optional[_Path] = None,
-          write_baseline: Optional[_Path] = None, slack: float = 1e-9, junit: Optional[_Path] = None) -> CheckReport:
+          receivers: Union[Receivers, Sequence[str]] = (), baseline: Optional[Path] = None,
+          write_baseline: Optional[Path] = None, slack: float = 1e-9, junit: Optional[Path] = None) -> CheckReport:
     """Compares values with true ones. In a test: ``exactff.check(...).raise_if_failed()``.
 
     Parameters

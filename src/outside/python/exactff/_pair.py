@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _exactff
-from ._arrays import Floats
-from ._errors import refuse
+from ._arguments import Floats, refuse
 
 _MOST_SHARES = 20
 _MOST_DIGITS = 10000

@@ -8,14 +8,10 @@ from typing import Any, Literal, Mapping, Optional, Sequence, Union, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _arrays, _exactff, _geometry
-from ._arrays import Floats, Ints, Names
-from ._errors import refuse, warn
-from ._files import check_existing, require_free
-from ._pair import FormFactor, FormFactors, Status, _Again
-from ._progress import Progress, shown
-from ._receivers import Receivers
-from ._report import Contact, Finding, Material, Patch, Report
+from . import _arguments, _exactff, _geometry
+from ._arguments import check_existing, Floats, Ints, Names, Progress, refuse, require_free, shown, warn
+from ._geometry import Contact, Finding, Material, Patch, Receivers, Report
+from ._pair import _Again, FormFactor, FormFactors, Status
 
 #: Own faces: None, "auto", "auto:DISTANCE", a name ("floor", "floor:2", "floor:1+2"), indices of faces, or a list of
 #: these for each receiver.
@@ -255,7 +251,7 @@ class Scene:
 
     def receivers_at(self, points: ArrayLike, normals: ArrayLike, on: On = None, ids: Sequence[str] = ()) -> Receivers:
         """Receivers from arrays, for :func:`exactff.truth`."""
-        shape, p, n = _arrays.receivers(points, normals)
+        shape, p, n = _arguments.receivers(points, normals)
         if ids and len(ids) != len(p):
             refuse(f"there are {len(ids)} ids and {len(p)} receivers", "each receiver has one", "give as many, or none")
         made = _exactff.ReceiverList.from_arrays(p, n, self._own_faces(on, shape, p, n, 0), list(ids))
@@ -265,8 +261,8 @@ class Scene:
                  threads: int = 0) -> Ints:
         """The faces that receivers were probably meant to lie on, as (n, k) indices filled up with -1: those within
         `tolerance` whose normals agree within a degree. An estimate. Default: about 1e-6 of the scene's size."""
-        shape, p, n = _arrays.receivers(points, normals)
-        found = _exactff.find_faces(self._scene, p, n, tolerance, _arrays.thread_count(threads))
+        shape, p, n = _arguments.receivers(points, normals)
+        found = _exactff.find_faces(self._scene, p, n, tolerance, _arguments.thread_count(threads))
         return found.reshape(shape + found.shape[1:])
 
     # --- form factors ---
@@ -321,9 +317,9 @@ class Scene:
         Source: F. Tampieri, "Accurate Form-Factor Computation", Graphics Gems III (1992), Eq. (4).
         """
         scene = self if transparent is None else self.with_transparent(*_arrays_names(transparent))
-        shape, p, n = _arrays.receivers(points, normals)
+        shape, p, n = _arguments.receivers(points, normals)
         names = self._sources(sources, sky=True)
-        count = _arrays.thread_count(threads)
+        count = _arguments.thread_count(threads)
         own = scene._own_faces(on, shape, p, n, count)
         scene._warn_of_misses(p, n, own)
         with shown(progress, "receiver") as tell:
@@ -352,7 +348,7 @@ class Scene:
         :attr:`FormFactor.gradient`, ``vertices=True`` also its derivatives by the vertices of the scene.
         """
         scene = self if transparent is None else self.with_transparent(*_arrays_names(transparent))
-        shape, p, n = _arrays.receivers(point, normal)
+        shape, p, n = _arguments.receivers(point, normal)
         if shape != ():
             refuse(f"there are receivers of shape {shape}", "form_factor is for one", "use form_factors")
         own = scene._own_faces(on, shape, p, n, 1)
@@ -409,7 +405,7 @@ class Scene:
             return np.broadcast_to(faces, (len(p), len(faces)))
         if isinstance(on, (list, tuple)) and any(not isinstance(one, (int, np.integer)) for one in on):
             return self._listed(on, shape)
-        return _arrays.face_rows(_arrays.whole_numbers(on, "on"), shape, self._scene.face_count())
+        return _arguments.face_rows(_arguments.whole_numbers(on, "on"), shape, self._scene.face_count())
 
     def _automatic(self, on: str) -> Union[None, float, Literal[False]]:
         """The tolerance of "auto" or "auto:DISTANCE" (None: the default); False for a name."""
@@ -448,11 +444,11 @@ class Scene:
                     by_name[one] = self._scene.own_faces(one)
                 rows.append(by_name[one])
             else:
-                row: Any = np.atleast_1d(_arrays.whole_numbers(one, f"on[{i}]")).tolist()
+                row: Any = np.atleast_1d(_arguments.whole_numbers(one, f"on[{i}]")).tolist()
                 rows.append(row)
         width = max(map(len, rows), default=0)
         table = np.array([row + [-1] * (width - len(row)) for row in rows], np.int64).reshape(len(rows), width)
-        return _arrays.face_rows(table, shape, self._scene.face_count())
+        return _arguments.face_rows(table, shape, self._scene.face_count())
 
     def _warn_of_misses(self, p: Floats, n: Floats, own: Ints) -> None:
         """Warns of points slightly behind or in front of a face: these are probably slips."""

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from numpy.typing import ArrayLike
 
-from . import _arrays, _exactff
-from ._arrays import Floats, Names
-from ._progress import Progress, shown
-from ._scene import On, Scene, _arrays_names
+from . import _arguments, _exactff
+from ._arguments import Floats, Names, Progress, shown
+from ._scene import _arrays_names, On, Scene
 
 __all__ = ["describe", "evaluate", "names"]
 
@@ -30,9 +29,9 @@ def evaluate(method: str, scene: Scene, points: ArrayLike, normals: ArrayLike, s
     do not depend on the number of threads. Raises InputError for an unknown method or setting, with what is allowed.
     """
     changed = scene if transparent is None else scene.with_transparent(*_arrays_names(transparent))
-    shape, p, n = _arrays.receivers(points, normals)
+    shape, p, n = _arguments.receivers(points, normals)
     chosen = scene._sources(sources)
-    count = _arrays.thread_count(threads)
+    count = _arguments.thread_count(threads)
     own = changed._own_faces(on, shape, p, n, count)
     with shown(progress, "receiver") as tell:
         values = _exactff.estimates(method, changed._scene, p, n, own, chosen, count, tell)

@@ -1,15 +1,36 @@
-// Shared by all commands that run long: a progress bar and the handling of Ctrl-C.
+// The program as a process: its exit code, Ctrl-C and a progress bar, and other processes that it was started with.
 #pragma once
 
 #include <array>
 #include <chrono>
 #include <csignal>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "exactff/progress.h"
+#include "jobs/team.h"
 
 namespace exactff::cli {
+
+inline constexpr int kBadInput = 2;
+inline constexpr int kNotAsAsked = 3;  // a value is not as accurate or certified as asked
+inline constexpr int kInternalFailure = 4;
+
+// The return value of the command. If it throws, prints why and returns 2 or 4.
+[[nodiscard]] int exit_code_of(const std::function<int()>& command);
+
+// --- the processes that one mpirun or srun started together ---
+
+// The rank of this process, read from the environment that the launcher sets; 0 if it was started alone.
+[[nodiscard]] int launched_rank();
+
+// Returns null if this process was started alone; the program then neither needs MPI nor waits until it is loaded.
+// Throws InputError if several processes were started and MPI is not available: each would do all the work. Call it
+// once, before the first thread is started.
+[[nodiscard]] std::unique_ptr<jobs::Team> join_team();
+
+// --- long runs ---
 
 // A bar with the remaining time and the rate. Drawn on a terminal only, at most ten times a second. Work that was
 // already done when a stage is first shown, such as the resumed part of a run, counts for neither.

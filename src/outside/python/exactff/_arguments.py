@@ -1,14 +1,70 @@
-"""From what users give to arrays that the compiled module takes. Nothing is rounded without a word."""
+"""What users give: arrays, of which nothing is rounded without a word, files, progress; and errors and warnings."""
 
 from __future__ import annotations
 
+import contextlib
+import importlib
+import importlib.util
 import math
-from typing import Any, Sequence, Union
+import os
+import sys
+import time
+import warnings
+from types import FrameType
+from typing import Any, Callable, Iterator, NamedTuple, NoReturn, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._errors import refuse
+from . import _exactff
+
+
+class Problem(NamedTuple):
+    """One problem in the input: where it is, what is wrong, why it matters, and what to do. Parts may be empty."""
+
+    file: str
+    line: int
+    what: str
+    why: str
+    suggestion: str
+    message: str
+
+
+class InputError(ValueError):
+    """Bad input: a file, an array, a name or an option. ``str(error)`` has one line for each problem."""
+
+    _problems: tuple[tuple[str, int, str, str, str, str], ...] = ()
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """All problems that were found, in the order of the input."""
+        return tuple(Problem(*fields) for fields in self._problems)
+
+
+class ModellingWarning(UserWarning):
+    """The input is legal, but may not be what was meant: a point a hair behind its floor, say. Also: a value that is
+    not certified."""
+
+
+_exactff._set_input_error(InputError)
+
+
+def refuse(what: str, why: str = "", suggestion: str = "") -> NoReturn:
+    """Raises an InputError in the wording of the library."""
+    message = what + (f" ({why})" if why else "") + (f"; {suggestion}" if suggestion else "")
+    error = InputError(message)
+    error._problems = (("", 0, what, why, suggestion, message),)
+    raise error
+
+
+def warn(message: str) -> None:
+    """Warns at the line of the user's program that called into the package."""
+    frame: Optional[FrameType] = sys._getframe(1)
+    level = 2
+    while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == __package__:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, ModellingWarning, stacklevel=level)
+
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -125,3 +181,92 @@ def thread_count(threads: int) -> int:
         refuse(f"threads is {threads!r}", "it is a whole number up to 4096; 0: as many as this process may use",
                "leave it at 0")
     return int(threads)
+
+
+Path = Union[str, "os.PathLike[str]"]
+
+
+def check_existing(existing: str) -> None:
+    """Refuses other words than "refuse" and "replace"."""
+    if existing not in ("refuse", "replace"):
+        refuse(f"existing is {existing!r}", "", "choose 'refuse' or 'replace'")
+
+
+def require_free(path: Path, existing: str, read: Sequence[Path] = ()) -> None:
+    """Refuses a file that exists, unless it may be replaced; and always one that was read."""
+    name = os.fspath(path)
+    if not os.path.isfile(name):
+        return
+    if any(os.path.samefile(name, file) for one in read for file in _read_with(os.fspath(one))):
+        refuse(f"{name}: is read and would be replaced", "its contents would be lost", "name another file")
+    if existing != "replace":
+        refuse(f"{name}: already exists", "it may hold something else",
+               "name another file, or replace it with existing='replace'")
+
+
+def _read_with(path: str) -> Iterator[str]:
+    """The file and, of an OBJ file, its MTL files, as far as they still exist."""
+    if not os.path.isfile(path):
+        return
+    yield path
+    if not path.lower().endswith(".obj"):
+        return
+    with open(path, encoding="utf-8", errors="surrogateescape") as lines:
+        for line in lines:
+            if line.lstrip().startswith("mtllib"):
+                names = line.strip()[len("mtllib"):].strip()
+                for name in {names, *names.split()}:
+                    library = os.path.join(os.path.dirname(path), name)
+                    if os.path.isfile(library):
+                        yield library
+
+
+Progress = Union[None, bool, Callable[[int, int], object]]
+_Tell = Optional[Callable[[int, int], object]]
+
+_PATIENCE = 1.0  # seconds before a bar appears
+
+
+class _Bar:
+    def __init__(self, unit: str, at_once: bool) -> None:
+        self._unit = unit
+        self._start = time.monotonic() - (_PATIENCE if at_once else 0.0)
+        self._bar: Any = None
+
+    def __call__(self, done: int, total: int) -> None:
+        if self._bar is None:
+            if time.monotonic() - self._start < _PATIENCE:
+                return
+            self._bar = importlib.import_module("tqdm.auto").tqdm(total=total, unit=self._unit)
+        self._bar.update(done - self._bar.n)
+
+    def close(self) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+
+def _has_tqdm() -> bool:
+    return importlib.util.find_spec("tqdm") is not None
+
+
+def _is_watched() -> bool:
+    return "ipykernel" in sys.modules or (sys.stderr is not None and sys.stderr.isatty())
+
+
+@contextlib.contextmanager
+def shown(progress: Progress, unit: str) -> Iterator[_Tell]:
+    """What to call with (done, total): a function of the user's, a bar, or nothing."""
+    if callable(progress):
+        yield progress
+        return
+    if progress is False or (progress is None and not (_is_watched() and _has_tqdm())):
+        yield None
+        return
+    if not _has_tqdm():
+        refuse("progress=True needs tqdm, which is not installed", "it draws the bar",
+               "install python3-tqdm, or give a function of (done, total)")
+    bar = _Bar(unit, at_once=progress is True)
+    try:
+        yield bar
+    finally:
+        bar.close()

@@ -1,12 +1,15 @@
-// Parses the lists and whole numbers of flags, and the patch names in them.
+// Parses the values of flags: lists, whole numbers, names of patches, and three numbers.
 #pragma once
 
+#include <CLI/CLI.hpp>
+#include <array>
 #include <charconv>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "exactff/geometry.h"
 #include "exactff/scene.h"
 
 namespace exactff::flags {
@@ -40,5 +43,24 @@ bool take_sky(const Scene& scene, std::vector<std::string>& texts);
 
 // Whether "all" is among them and means every patch.
 bool names_all(const Scene& scene, const std::vector<std::string>& texts);
+
+// For selections_named(). The help says `meaning`, then how several are named, then `more`.
+void add_names(CLI::App& app, const std::string& flag, std::vector<std::string>& names, const std::string& meaning,
+               const std::string& more = "");
+void add_threads(CLI::App& app, int& threads);
+
+// The flags that are given, each preceded by a blank and quoted for a shell, without those that `left_out` names.
+[[nodiscard]] std::string command_words(const CLI::App& command, const std::vector<std::string>& left_out = {});
+
+// Three numbers as given; empty texts if the flag was not. CLI11 always gives an array all its words, so "-.5" is no
+// flag.
+using ThreeNumbers = std::array<std::string, 3>;
+[[nodiscard]] inline bool is_given(const ThreeNumbers& numbers) { return !numbers.front().empty(); }
+
+CLI::Option* add_vector_option(CLI::App& app, const std::string& flag, ThreeNumbers& numbers,
+                               const std::string& meaning, const std::string& type = "X Y Z");
+
+// Parses finite doubles with correct rounding. The InputError for other texts names the flag.
+[[nodiscard]] Vec3 vector_of(const ThreeNumbers& numbers, const std::string& flag);
 
 }  // namespace exactff::flags

@@ -1,10 +1,9 @@
-#include "flags/lists.h"
+#include "flags/values.h"
 
 #include <algorithm>
-#include <array>
-#include <string_view>
 
 #include "scene/selections.h"
+#include "text/escape.h"
 #include "text/names.h"
 #include "text/number_text.h"
 #include "text/refuse.h"
@@ -46,6 +45,18 @@ void refuse_other_names_of_sky(const Scene& scene, const std::string& name) {
   if (std::ranges::find(kOthers, text::in_lower_case(name)) == kOthers.end()) return;
   text::refuse("there is no patch named " + text::in_quotes(name, text::kShownName),
                "what is open, all directions that meet nothing, is called sky here", "write sky instead");
+}
+
+// If numbers are missing, the flag that follows would be read as one of them.
+std::string is_no_flag(const std::string& text) {
+  return text.starts_with("--") ? "needs three numbers; found '" + text + "' among them" : "";
+}
+
+double finite_number(const std::string& text, const std::string& flag) {
+  const text::ParsedNumber number = text::parse_number(text);
+  if (number.fault == text::NumberFault::kNone) return number.value;
+  text::refuse(flag + ": " + describe(number.fault, text), "a coordinate is a finite decimal number",
+               "give three numbers, for example " + flag + " 0 0.5 -1e-3");
 }
 
 }  // namespace
@@ -97,6 +108,44 @@ bool names_all(const Scene& scene, const std::vector<std::string>& texts) {
     if (parts.size() > 1 && is_a_name(scene, text)) return false;
     return std::ranges::any_of(parts, [&](const std::string& part) { return means_all(scene, part); });
   });
+}
+
+void add_names(CLI::App& app, const std::string& flag, std::vector<std::string>& names, const std::string& meaning,
+               const std::string& more) {
+  app.add_option(flag, names, meaning + kNamesHelp + more)
+      ->type_name("NAME[:K]")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_threads(CLI::App& app, int& threads) {
+  app.add_option("--threads", threads, "Number of threads (default: all); it does not affect the values")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+}
+
+std::string command_words(const CLI::App& command, const std::vector<std::string>& left_out) {
+  std::string line;
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string flag = option->get_name();
+    if (option->count() == 0 || option->get_positional() || std::ranges::count(left_out, flag) > 0) continue;
+    const bool is_switch = option->get_items_expected_max() == 0, takes_several = option->get_type_size() > 1;
+    if (is_switch || takes_several) line += ' ' + flag;
+    if (is_switch) continue;
+    for (const std::string& value : option->results()) {
+      line += (takes_several ? "" : ' ' + flag) + ' ' + text::shell_word(value);
+    }
+  }
+  return line;
+}
+
+CLI::Option* add_vector_option(CLI::App& app, const std::string& flag, ThreeNumbers& numbers,
+                               const std::string& meaning, const std::string& type) {
+  return app.add_option(flag, numbers, meaning)->type_name(type)->check(is_no_flag);
+}
+
+Vec3 vector_of(const ThreeNumbers& numbers, const std::string& flag) {
+  return {finite_number(numbers[0], flag), finite_number(numbers[1], flag), finite_number(numbers[2], flag)};
 }
 
 }  // namespace exactff::flags
