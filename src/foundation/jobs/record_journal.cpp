@@ -13,7 +13,6 @@
 #include "exactff/jobs.h"
 #include "exactff/version.h"
 #include "files/file.h"
-#include "files/work_folder.h"
 #include "text/crc32.h"
 
 namespace exactff::jobs {

@@ -1,6 +1,6 @@
 #include "page/chapter.h"
 
-#include "files/fields.h"
+#include "jobs/kept_work.h"
 
 namespace exactff::page {
 namespace {
@@ -22,13 +22,13 @@ void fields(Words& words, Chapter& chapter) {
 }  // namespace
 
 std::string to_bytes(Chapter chapter) {
-  files::WordWriter words;
+  jobs::WordWriter words;
   fields(words, chapter);
   return words.bytes();
 }
 
 std::optional<Chapter> chapter_of(std::string_view bytes) {
-  files::WordReader words(bytes);
+  jobs::WordReader words(bytes);
   Chapter chapter;
   fields(words, chapter);
   if (!words.complete()) return std::nullopt;

@@ -10,7 +10,7 @@
 #include <iostream>
 #include <utility>
 
-#include "files/unfinished.h"
+#include "files/file.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 

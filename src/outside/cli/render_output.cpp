@@ -9,7 +9,7 @@
 #include "cli/exit_code.h"
 #include "cli/output.h"
 #include "files/file.h"
-#include "files/npy_file.h"
+#include "files/numpy.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/refuse.h"

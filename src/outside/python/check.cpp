@@ -7,7 +7,6 @@
 #include "check/json.h"
 #include "check/junit.h"
 #include "check/words.h"
-#include "files/apart.h"
 #include "files/file.h"
 #include "python/bindings.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "files/work_folder.h"
+#include "files/file.h"
 #include "kernel/float_environment.h"
 #include "page/gnuplot.h"
 #include "page/plot_script.h"

@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "exactff/matrix.h"
-#include "files/npz_file.h"
+#include "files/numpy.h"
 #include "kernel/outward.h"
 #include "matrix/row_facts.h"
 

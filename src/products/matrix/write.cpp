@@ -3,7 +3,6 @@
 #include <memory>
 #include <utility>
 
-#include "files/apart.h"
 #include "files/file.h"
 #include "jobs/compute.h"
 #include "jobs/leader.h"

@@ -1,5 +1,4 @@
 #include "exactff/truth.h"
-#include "files/apart.h"
 #include "files/file.h"
 #include "jobs/shards.h"
 #include "kernel/float_environment.h"

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "exactff/truth.h"
-#include "files/npz_file.h"
+#include "files/numpy.h"
 #include "jobs/journal.h"
 #include "kernel/float_environment.h"
 #include "text/refuse.h"

@@ -6,7 +6,7 @@
 #include "exactff/exr.h"
 #include "exactff/truth.h"
 #include "files/file.h"
-#include "files/npy_file.h"
+#include "files/numpy.h"
 #include "files/parallel.h"
 #include "jobs/journal.h"
 #include "kernel/float_environment.h"

@@ -9,7 +9,7 @@
 #include <memory>
 #include <utility>
 
-#include "files/apart.h"
+#include "files/file.h"
 #include "jobs/compute.h"
 #include "jobs/leader.h"
 #include "kernel/float_environment.h"

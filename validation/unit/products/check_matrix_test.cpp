@@ -12,8 +12,7 @@
 #include "check/matrices.h"
 #include "check/words.h"
 #include "exactff/matrix.h"
-#include "files/npy_file.h"
-#include "files/read_npy.h"
+#include "files/numpy.h"
 #include "support/program.h"
 
 namespace exactff::check {

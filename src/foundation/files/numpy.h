@@ -1,8 +1,12 @@
-// NumPy's file format .npy, version 1.0: a header of text, then the elements, little-endian, the last index running
-// fastest (C order). Source: numpy.lib.format, "Format Version 1.0".
+// NumPy's file formats. Sources: numpy.lib.format, "Format Version 1.0"; numpy.savez; "APPNOTE.TXT - .ZIP File Format
+// Specification", 4.3.
+//
+// .npy: one array. A header of text, then the elements, little-endian, the last index running fastest (C order).
+// .npz: arrays with names, a zip archive of .npy files that are stored, not compressed.
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,11 +15,23 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "files/file.h"
-#include "files/little_endian.h"
 
 namespace exactff::files {
+
+// The bytes of numbers, lowest byte first.
+template <class T>
+[[nodiscard]] std::string little_endian(std::span<const T> values) {
+  std::string bytes(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+  if constexpr (std::endian::native == std::endian::big) {
+    for (std::size_t i = 0; i < bytes.size(); i += sizeof(T)) std::reverse(&bytes[i], &bytes[i] + sizeof(T));
+  }
+  return bytes;
+}
+
+// --- one array, written ---
 
 // NumPy's name of the element type.
 template <class T>
@@ -86,5 +102,59 @@ void write_npy(const std::filesystem::path& path, std::span<const std::size_t> s
   file.append(values);
   file.commit();
 }
+
+// --- one array, read ---
+
+struct NpyArray {
+  std::vector<std::size_t> shape;
+  std::vector<double> values;  // in C order; may be infinite or NaN
+};
+
+[[nodiscard]] bool is_npy(std::string_view bytes);
+// The same of a file. False if it cannot be read.
+[[nodiscard]] bool is_npy_file(const std::filesystem::path& path);
+
+// Of float64 or float32, either byte order, in C or Fortran order. Throws InputError, with what to do, for a file that
+// cannot be read, holds other elements, or is not as long as its shape says.
+[[nodiscard]] NpyArray read_npy(const std::filesystem::path& path);
+
+// --- several arrays ---
+
+class NpzFile {
+ public:
+  // The file appears at `path`, and replaces another one there, when commit() returns. The constructor throws
+  // InputError if the file cannot be written.
+  explicit NpzFile(const std::filesystem::path& path, FailureAdvice advice = {}) : file_(path, std::move(advice)) {}
+
+  // Requires a name that was not used. Throws InputError if the file grows beyond 4 GiB.
+  template <class T>
+  void add(std::string_view name, std::span<const std::size_t> shape, std::span<const T> values) {
+    add_bytes(name, npy_header(kNpyType<T>, shape), little_endian(values));
+  }
+  template <class T>
+  void add(std::string_view name, const std::vector<T>& values) {
+    const std::size_t count = values.size();
+    add(name, std::span(&count, 1), std::span<const T>(values));
+  }
+  // An array of texts, of characters (Unicode). Text that is not UTF-8 is read as Windows-1252.
+  void add_texts(std::string_view name, const std::vector<std::string>& texts);
+  // One text as an array without axes, of bytes.
+  void add_word(std::string_view name, std::string_view word);
+
+  void commit();
+
+ private:
+  struct Entry {
+    std::string name;
+    std::uint32_t checksum = 0, size = 0, offset = 0;
+  };
+  void add_bytes(std::string_view name, const std::string& header, const std::string& elements);
+  void require_room(std::size_t bytes) const;
+  void append(const std::string& bytes);
+
+  WholeFile file_;
+  std::uint64_t written_ = 0;
+  std::vector<Entry> entries_;
+};
 
 }  // namespace exactff::files
