@@ -5,8 +5,8 @@
 
 #include "files/file.h"
 #include "jobs/compute.h"
-#include "jobs/leader.h"
 #include "jobs/shards.h"
+#include "jobs/team.h"
 #include "kernel/float_environment.h"
 #include "matrix/rows.h"
 #include "matrix/team.h"

@@ -11,7 +11,7 @@
 
 #include "files/file.h"
 #include "jobs/compute.h"
-#include "jobs/leader.h"
+#include "jobs/team.h"
 #include "kernel/float_environment.h"
 #include "truth/rows.h"
 #include "truth/team.h"
