@@ -9,7 +9,7 @@
 
 namespace exactff {
 
-// The progress of the work. Hooks are called with it from one thread at a time.
+// The progress of the work. Hooks are called with it from the thread that called the function.
 struct Progress {
   std::string_view stage;
   std::size_t done = 0;
