@@ -9,11 +9,14 @@
 
 namespace exactff {
 
-// The progress of the work. Hooks are called with it from one thread at a time.
+// The progress of the work. Hooks are called with it from the thread that called the function.
 struct Progress {
   std::string_view stage;
   std::size_t done = 0;
   std::size_t total = 0;
+  // What takes long just now, in the words of messages: "from 'floor' to 'light'". Of all that is being computed, the
+  // step that began first, if it has taken a second; empty if there is none, or where steps have no names.
+  std::string_view slow = {};
 };
 
 // `cancelled` is called from any thread, every few milliseconds, also within a single pair of receiver and source. It

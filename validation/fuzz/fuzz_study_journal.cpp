@@ -1,13 +1,11 @@
 // Arbitrary bytes as the journal of an interrupted study. The bytes after the first byte are the journal itself or, if
-// the first byte is odd, edits of a valid one (edits.h). If its second bit is set, the edits change records and update
+// the first byte is odd, edits of a valid one (edits.h). If its second bit is set, the edits change blocks and update
 // their checksums, so that the code behind the checksums is reached, too.
 //
 // A journal with valid checksums gives the values of an undisturbed run, or is refused with a message. A journal with
 // forged checksums may contain wrong values, which cannot be detected; it must do no other harm.
 #include <algorithm>
-#include <boost/crc.hpp>
 #include <cstdint>
-#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <stdexcept>
@@ -17,6 +15,7 @@
 #include "exactff/study.h"
 #include "fuzz/complaints.h"
 #include "fuzz/edits.h"
+#include "jobs/blocks.h"
 #include "report/report.h"
 #include "support/program.h"
 #include "text/hashes.h"
@@ -26,14 +25,6 @@ namespace exactff::validation {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string record(std::string_view name, std::string_view bytes) {
-  boost::crc_32_type crc;
-  crc.process_bytes(name.data(), name.size());
-  crc.process_bytes(bytes.data(), bytes.size());
-  return std::string(name) + ' ' + std::to_string(bytes.size()) + ' ' + text::hexadecimal(crc.checksum(), 8) + '\n' +
-         std::string(bytes) + '\n';
-}
 
 study::Request request_of(const Scene& scene) {
   study::Request request = small_request(scene, 1);
@@ -68,18 +59,16 @@ Truth make_truth(const Scene& scene) {
   return {std::move(tables), text};
 }
 
-// Edits every record of a valid journal, with a new checksum for each.
-std::string with_edited_records(const std::string& journal, Bytes& bytes) {
-  std::size_t at = journal.find('\n') + 1;
-  std::string out = journal.substr(0, at);
-  while (at < journal.size()) {
-    const std::size_t line = journal.find('\n', at), blank = journal.find(' ', at);
-    const std::size_t length = std::strtoull(journal.c_str() + blank, nullptr, 10);
-    const std::uint8_t edits = bytes.next();
-    std::string content = journal.substr(line + 1, length);
-    if (edits % 4 == 0) content = edited(content, bytes);
-    out += record(journal.substr(at, blank - at), content);
-    at = line + 1 + length + 1;
+// Edits blocks of a valid journal, with a new checksum for each.
+std::string with_edited_blocks(const std::string& journal, Bytes& bytes) {
+  const std::size_t head = journal.find('\n') + 1;
+  std::string out = journal.substr(0, head);
+  std::ofstream(file(), std::ios::binary) << journal;
+  const files::File whole(file(), files::File::Mode::kRead);
+  for (const jobs::Block& block : jobs::find_blocks(whole, head, "work").list) {
+    std::string content = jobs::read_bytes(whole, block);
+    if (bytes.next() % 4 == 0) content = edited(content, bytes);
+    out += jobs::block_text("work", block.name, content);
   }
   return out;
 }
@@ -112,7 +101,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string raw(reinterpret_cast<const char*>(data) + std::min<std::size_t>(size, 1),
                         size - std::min<std::size_t>(size, 1));
   const bool forged = (mode & 2) != 0;
-  const std::string journal = forged            ? with_edited_records(truth.journal, bytes)
+  const std::string journal = forged            ? with_edited_blocks(truth.journal, bytes)
                               : (mode & 1) != 0 ? edited(truth.journal, bytes)
                                                 : raw;
   check(journal, scene, forged ? nullptr : &truth.tables);

@@ -2,26 +2,114 @@
 
 #include <algorithm>
 #include <chrono>
-#include <mutex>
-#include <optional>
 #include <stdexcept>
-#include <system_error>
 #include <thread>
-#include <vector>
+#include <utility>
 
-#include "files/apart.h"
-#include "jobs/leader.h"
+#include "files/file.h"
 #include "jobs/shards.h"
-#include "jobs/workers.h"
 #include "kernel/expect.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
 namespace exactff::jobs {
-namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+using files::WorkerPool;
+
+// --- what remains to be computed ---
+
+Schedule::Schedule(const Rows& rows, std::span<const Block> done)
+    : plan_(rows.plan()), position_((plan_.shard.number - 1) * plan_.chunk) {
+  for (const Block& block : done) done_.push_back(range_of(block));
+  rows_ = plan_.shard_rows();
+  for (const Range& range : done_) rows_ -= range.rows;
+}
+
+std::optional<Range> Schedule::next() {
+  const std::lock_guard lock(mutex_);
+  return advance();
+}
+
+std::optional<Range> Schedule::advance() {
+  while (position_ < plan_.count) {
+    const std::uint64_t chunk_end = std::min(plan_.count, (position_ / plan_.chunk + 1) * plan_.chunk);
+    const bool more_done = next_done_ < done_.size();
+    if (more_done && done_[next_done_].first == position_) {
+      position_ = done_[next_done_++].end();
+    } else {
+      const std::uint64_t end = more_done ? std::min(chunk_end, done_[next_done_].first) : chunk_end;
+      const Range range{position_, static_cast<std::uint32_t>(end - position_)};
+      position_ = end;
+      if (position_ == chunk_end) position_ += (plan_.shard.count - 1) * plan_.chunk;
+      return range;
+    }
+    if (position_ == chunk_end) position_ += (plan_.shard.count - 1) * plan_.chunk;
+  }
+  return std::nullopt;
+}
+
+// --- a thread ---
+
+namespace {
+
+constexpr auto kLongestUndelivered = std::chrono::seconds(1);
+
+// Rows that are finished and not yet delivered.
+class Batch {
+ public:
+  Batch(std::uint64_t first, const DeliverRows& deliver) : deliver_(deliver) { finished_.range.first = first; }
+
+  void add(std::string_view line) {
+    finished_.lines += line;
+    ++finished_.range.rows;
+    if (Clock::now() - since_ >= kLongestUndelivered) deliver();
+  }
+  void add_slow(SlowRow slow) { finished_.slow.push_back(slow); }
+  void deliver() {
+    Finished whole{{finished_.range.end(), 0}, {}, {}};
+    std::swap(whole, finished_);
+    since_ = Clock::now();
+    if (whole.range.rows > 0) deliver_(std::move(whole));
+  }
+
+ private:
+  const DeliverRows& deliver_;
+  Finished finished_;
+  Clock::time_point since_ = Clock::now();
+};
+
+}  // namespace
+
+void compute_rows(const Rows& rows, double slow_seconds, const TakeRange& take, const DeliverRows& deliver,
+                  WorkerPool::Worker& worker) {
+  std::string line;
+  while (!worker.must_stop()) {
+    const std::optional<Range> range = take();
+    if (!range) return;
+    Batch batch(range->first, deliver);
+    const std::unique_ptr<Rows::Computer> computer = rows.computer();
+    try {
+      for (std::uint64_t row = range->first; row < range->end() && !worker.must_stop(); ++row) {
+        const auto start = worker.begin(row);
+        line.clear();
+        computer->append(row, line);
+        const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        if (seconds >= slow_seconds) batch.add_slow({row, seconds});
+        batch.add(line);
+      }
+    } catch (...) {
+      batch.deliver();
+      throw;
+    }
+    batch.deliver();
+  }
+}
+
+// --- all of them ---
+
+namespace {
 
 constexpr auto kAlone = std::chrono::milliseconds(100);   // between checks of progress and signals
 constexpr auto kWithTeam = std::chrono::milliseconds(1);  // and at messages
@@ -45,14 +133,14 @@ class Computation {
 
  private:
   void compute(Summary& summary) {
-    Workers workers(
-        rows_, rows_.plan().threads, hooks_, [this] { return schedule_.next(); },
-        [this](Finished finished) { keep(std::move(finished)); });
+    WorkerPool pool(rows_.plan().threads, {{}, hooks_.cancelled}, [this](WorkerPool::Worker& worker) {
+      compute_rows(rows_, hooks_.slow_seconds, take_, deliver_, worker);
+    });
     try {
-      attend(workers, summary);
+      attend(pool, summary);
     } catch (...) {
-      workers.stop();
-      while (!workers.wait_for(kAlone)) {
+      pool.stop();
+      while (!pool.wait_for(kAlone)) {
       }
       collect_the_rest();
       tell(summary);
@@ -62,14 +150,14 @@ class Computation {
   }
 
   // While threads work: handles progress, slow rows, other processes and the disk.
-  void attend(Workers& workers, Summary& summary) {
+  void attend(WorkerPool& pool, Summary& summary) {
     auto synced = Clock::now();
     for (bool ended = false; !ended || !all_done() || (leader_ && !leader_->all_here());) {
       if (ended) std::this_thread::sleep_for(kWithTeam);  // other processes have not ended
-      ended = workers.wait_for(leader_ ? kWithTeam : kAlone);
-      if (ended) workers.rethrow();
-      if (leader_) leader_->attend([this] { return schedule_.next(); }, [this](Finished f) { keep(std::move(f)); });
-      tell(summary);
+      ended = pool.wait_for(leader_ ? kWithTeam : kAlone);
+      if (ended) pool.rethrow();
+      if (leader_) leader_->attend(take_, deliver_);
+      tell(summary, pool.slow_step(files::kSlowStep));
       if (hooks_.cancelled && hooks_.cancelled()) throw Cancelled();
       if (Clock::now() - synced < kSyncEvery) continue;
       journal_.sync();
@@ -80,7 +168,7 @@ class Computation {
 
   // After the work was given up: still keeps what other processes have finished.
   void collect_the_rest() {
-    if (leader_) leader_->cease([this](Finished f) { keep(std::move(f)); });
+    if (leader_) leader_->cease(deliver_);
     journal_.sync();
   }
 
@@ -97,7 +185,7 @@ class Computation {
     return done_ == rows_.shard_rows();
   }
 
-  void tell(Summary& summary) {
+  void tell(Summary& summary, std::optional<std::uint64_t> slow_now = {}) {
     std::vector<SlowRow> slow;
     std::uint64_t done = 0;
     {
@@ -109,13 +197,17 @@ class Computation {
     for (const SlowRow& row : slow) {
       if (hooks_.slow_row) hooks_.slow_row(rows_.name(row.row), row.seconds);
     }
-    if (hooks_.progress) hooks_.progress({rows_.plan().kind.rows, done, rows_.shard_rows()});
+    if (!hooks_.progress) return;
+    const std::string name = slow_now ? rows_.name(*slow_now) : std::string();
+    hooks_.progress({rows_.plan().kind.rows, done, rows_.shard_rows(), name});
   }
 
   const Rows& rows_;
   RowJournal& journal_;
   const RowHooks& hooks_;
   Schedule schedule_;
+  const TakeRange take_ = [this] { return schedule_.next(); };
+  const DeliverRows deliver_ = [this](Finished finished) { keep(std::move(finished)); };
   std::optional<Leader> leader_;
   std::mutex mutex_;
   std::uint64_t done_ = 0;
@@ -138,11 +230,11 @@ void for_each_chunk(const Rows& rows, const RowJournal& journal, const RowHooks&
   const std::vector<Block> blocks = journal.blocks();
   [[maybe_unused]] std::uint64_t taken = 0;  // for the requirement
   for (std::size_t i = 0; i < blocks.size();) {
-    Range range{blocks[i].range.first, 0};
+    Range range{range_of(blocks[i]).first, 0};
     std::string text;
-    for (; i < blocks.size() && blocks[i].range.first / chunk == range.first / chunk; ++i) {
+    for (; i < blocks.size() && range_of(blocks[i]).first / chunk == range.first / chunk; ++i) {
       text += journal.read(blocks[i]);
-      range.rows += blocks[i].range.rows;
+      range.rows += range_of(blocks[i]).rows;
     }
     if (!take(range, text)) throw std::logic_error("a block of the journal is not what it was");
     pace.add(range.rows);
@@ -216,10 +308,11 @@ bool is_complete(const fs::path& file, Existing existing) {
 
 void read_shard(const File& file, const Rows& rows, std::uint64_t head_bytes, const See& see) {
   std::uint64_t found = 0;
-  for (const Block& block : find_blocks(file, head_bytes).list) {
-    const std::string text = read_lines(file, block);
-    if (!rows.may_be_one_block(block.range) || !rows.may_be_text_of(block.range, text)) continue;
-    found += block.range.rows;
+  for (const Block& block : find_blocks(file, head_bytes, kRowsWord).list) {
+    const Range range = range_of(block);
+    const std::string text = read_bytes(file, block);
+    if (!rows.may_be_one_block(range) || !rows.may_be_text_of(range, text)) continue;
+    found += range.rows;
     if (see) see(text);
   }
   if (found != rows.shard_rows()) refuse_damaged(file.path(), rows, found, rows.shard_rows());

@@ -1,9 +1,13 @@
 #include "jobs/journal.h"
 
 #include <algorithm>
+#include <memory>
 #include <system_error>
+#include <utility>
 
 #include "exactff/error.h"
+#include "exactff/version.h"
+#include "files/file.h"
 #include "text/phrases.h"
 
 namespace exactff::jobs {
@@ -17,16 +21,8 @@ fs::path journal_of(const fs::path& file) {
 
 namespace {
 
-File open_journal(const fs::path& path, const RowHooks& hooks) {
-  File file = files::open_locked(
-      path, {"the rows are kept in this file", "name a file in a folder that exists, is writable and has free space"},
-      {.what = "another process is working on it",
-       .why = "two processes would compute the same rows and damage each other's file",
-       .suggestion = "wait for the other process, or name another file with -o"});
-  if (file.lock() == File::Lock::kUnsupported && hooks.note) {
-    hooks.note(path.string() + ": this file system cannot lock files; make sure that no other process uses the file");
-  }
-  return file;
+std::string_view line_at(std::string_view text, std::size_t at) {
+  return text.substr(at, std::min(text.find('\n', at), text.size()) - at);
 }
 
 }  // namespace
@@ -50,75 +46,92 @@ void require_free(const fs::path& file, Existing existing) {
   }
 }
 
-RowJournal::RowJournal(const fs::path& file, const Rows& rows, Existing existing, const RowHooks& hooks)
-    : file_(open_journal(journal_of(file), hooks)) {
-  take_over(rows, existing, hooks);
-  file_.set_failure_advice({"it contains the rows finished so far", "free some space, then continue with --resume"});
+// --- the file ---
+
+namespace {
+
+const files::FailureAdvice kAdvice{"finished work is kept in this file, so that an interrupted run can continue",
+                                   "name a file in a folder that exists, is writable and has free space"};
+const files::FailureAdvice kAdviceWithWork{"it contains what is finished so far",
+                                           "free some space, then continue with --resume"};
+const Problem kInUse{.what = "another process is working on it",
+                     .why = "two processes would compute the same values and damage each other's file",
+                     .suggestion = "wait for the other process, or give another name with -o"};
+
+}  // namespace
+
+JournalFile::JournalFile(const fs::path& path, JournalForm form, Existing existing,
+                         const std::function<void(const std::string&)>& note)
+    : form_(std::move(form)), file_(files::open_locked(path, kAdvice, kInUse)) {
+  if (note && file_.lock() == File::Lock::kUnsupported) {
+    note(path.string() + ": this file system cannot lock files; make sure that no other process uses the file");
+  }
+  take_over(existing, note);
+  file_.set_failure_advice(kAdviceWithWork);
 }
 
-RowJournal::~RowJournal() {
-  if (blocks_.empty() && end_ > 0) remove();
+JournalFile::~JournalFile() {
+  if (blocks_.empty()) remove();
 }
 
-void RowJournal::take_over(const Rows& rows, Existing existing, const RowHooks& hooks) {
-  const std::string head = rows.head(HeadOf::kJournal);
-  const std::optional<std::string> found = read_head(file_);
-  // A journal that is cut off within its head holds no rows.
-  const bool nothing = !found && head.starts_with(file_.read(0, head.size()));
-  if (existing == Existing::kReplace || nothing) return begin(head);
-  require_same_head(file_.path(), found.value_or(file_.read(0, 4096)), head);
-  Blocks there = find_blocks(file_, head.size());
-  if (there.list.empty()) return begin(head);
+void JournalFile::take_over(Existing existing, const std::function<void(const std::string&)>& note) {
+  const std::string beginning = file_.read(0, form_.head.size());
+  // A journal that is cut off within its head holds nothing.
+  if (beginning != form_.head && form_.head.starts_with(beginning)) return begin();
+  require_same(beginning, existing);
+  if (existing == Existing::kReplace) return begin();
+  Blocks there = find_blocks(file_, form_.head.size(), form_.word);
+  if (there.list.empty()) return begin();
   if (existing == Existing::kRefuse) {
-    throw InputError({.file = file_.path().string(),
-                      .what = "contains the finished rows of an interrupted run",
-                      .why = "they would be lost",
+    throw InputError({.file = path().string(),
+                      .what = "contains the finished work of an interrupted run",
+                      .why = "it may be hours of work",
                       .suggestion = "continue with --resume, or start again with --force"});
   }
   const std::uint64_t lost = there.damaged + file_.size() - there.end;
   if (lost > 0) {
-    if (hooks.note) {
-      hooks.note(file_.path().string() + ": " + text::counted(lost, "byte") +
-                 " are incomplete or damaged; their rows are computed again");
+    if (note) {
+      note(path().string() + ": " + text::counted(lost, "byte") +
+           " are incomplete or damaged; what they held is computed again");
     }
     file_.truncate(there.end);
   }
   end_ = synced_ = there.end;
-  keep_usable(std::move(there.list), rows, hooks);
+  for (Block& block : there.list) blocks_.insert_or_assign(block.name, block);
 }
 
-void RowJournal::begin(const std::string& head) {
+// The first line names the program and its version.
+void JournalFile::require_same(std::string_view beginning, Existing existing) const {
+  const std::string_view first = line_at(beginning, 0);
+  if (first.find("exactff") == std::string_view::npos) {
+    throw InputError({.file = path().string(),
+                      .what = "already exists, and exactff did not write it",
+                      .why = "finished work must be kept in a file with this name",
+                      .suggestion = "move it away, or give another name with -o"});
+  }
+  if (existing == Existing::kReplace || beginning == form_.head) return;
+  if (!first.starts_with('#') || first.find(kVersion) == std::string_view::npos) {
+    throw InputError({.file = path().string(),
+                      .what = "was written by another version of exactff",
+                      .why = "its values may differ",
+                      .suggestion = "continue with that version, or start again with --force"});
+  }
+  require_same_head(path(), read_head(file_).value_or(file_.read(0, 4096)), form_.head);
+}
+
+void JournalFile::begin() {
   file_.truncate(0);
   try {
-    file_.write(0, head);
+    file_.write(0, form_.head);
   } catch (const InputError&) {  // no room: nothing is left behind
     remove();
     throw;
   }
-  end_ = head.size();
+  end_ = form_.head.size();
 }
 
-// Keeps the rows of this request, each once. Nothing else is ever appended, but the file may have been tampered with.
-void RowJournal::keep_usable(std::vector<Block> found, const Rows& rows, const RowHooks& hooks) {
-  std::stable_sort(found.begin(), found.end(),
-                   [](const Block& a, const Block& b) { return a.range.first < b.range.first; });
-  const std::size_t count = found.size();
-  std::uint64_t next = 0;
-  for (const Block& block : found) {
-    const Range& range = block.range;
-    if (range.first < next || range.rows == 0 || !rows.may_be_one_block(range)) continue;
-    if (!rows.may_be_text_of(range, read(block))) continue;
-    blocks_.push_back(block);
-    next = range.end();
-  }
-  if (blocks_.size() < count && hooks.note) {
-    hooks.note(file_.path().string() + ": " + text::counted(count - blocks_.size(), "block") +
-               " cannot be used here; their rows are computed again");
-  }
-}
-
-void RowJournal::append(Range range, std::string_view lines) {
-  const std::string text = block_text(range, lines);
+void JournalFile::add(const std::string& name, std::string_view bytes) {
+  const std::string text = block_text(form_.word, name, bytes);
   const std::lock_guard lock(mutex_);
   try {
     file_.write(end_, text);
@@ -129,11 +142,23 @@ void RowJournal::append(Range range, std::string_view lines) {
     }
     throw;
   }
-  blocks_.push_back({range, end_ + text.size() - lines.size(), lines.size()});
+  blocks_.insert_or_assign(name, Block{name, end_ + text.size() - bytes.size(), bytes.size()});
   end_ += text.size();
 }
 
-void RowJournal::sync() {
+std::optional<std::string> JournalFile::find(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = blocks_.find(name);
+  if (found == blocks_.end()) return std::nullopt;
+  return read(found->second);
+}
+
+void JournalFile::forget(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  blocks_.erase(name);
+}
+
+void JournalFile::sync() {
   std::uint64_t end = 0;
   {
     const std::lock_guard lock(mutex_);
@@ -141,15 +166,80 @@ void RowJournal::sync() {
   }
   if (end == synced_) return;
   file_.sync();
-  if (synced_ == 0) files::sync_folder_of(file_.path());  // makes the directory entry of the file durable
+  if (synced_ == 0) files::sync_folder_of(path());  // makes the directory entry of the file durable
   synced_ = end;
 }
 
+std::size_t JournalFile::size() const {
+  const std::lock_guard lock(mutex_);
+  return blocks_.size();
+}
+
+std::vector<Block> JournalFile::blocks() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<Block> all;
+  for (const auto& [name, block] : blocks_) all.push_back(block);
+  return all;
+}
+
+// --- of rows ---
+
+RowJournal::RowJournal(const fs::path& file, const Rows& rows, Existing existing, const RowHooks& hooks)
+    : file_(journal_of(file), {rows.head(HeadOf::kJournal), std::string(kRowsWord)}, existing, hooks.note) {
+  // Nothing but rows of this request, each once, is ever appended, but the file may have been tampered with.
+  std::size_t unusable = 0;
+  std::uint64_t next = 0;
+  for (const Block& block : blocks()) {
+    const Range range = range_of(block);
+    if (range.first >= next && rows.may_be_one_block(range) && rows.may_be_text_of(range, read(block))) {
+      next = range.end();
+    } else {
+      file_.forget(block.name);
+      ++unusable;
+    }
+  }
+  if (unusable > 0 && hooks.note) {
+    hooks.note(path().string() + ": " + text::counted(unusable, "block") +
+               " cannot be used here; their rows are computed again");
+  }
+}
+
 std::vector<Block> RowJournal::blocks() const {
-  std::vector<Block> sorted = blocks_;
-  std::sort(sorted.begin(), sorted.end(), [](const Block& a, const Block& b) { return a.range.first < b.range.first; });
+  std::vector<Block> sorted = file_.blocks();
+  std::ranges::sort(sorted, {}, [](const Block& block) { return range_of(block).first; });
   return sorted;
 }
+
+// --- of other work ---
+
+struct Journal::Impl {
+  explicit Impl(const fs::path& path, Existing existing)
+      : made(path),
+        file(path,
+             {std::string("# exactff ") + kVersion + " journal: finished work of a run that continues with --resume\n",
+              "work"},
+             existing, {}) {}
+
+  files::MadeFolders made;
+  JournalFile file;
+};
+
+Journal::Journal(const fs::path& path, Existing existing) : impl_(std::make_unique<Impl>(path, existing)) {}
+Journal::~Journal() = default;
+
+std::optional<std::string> Journal::find(const std::string& name) const { return impl_->file.find(name); }
+void Journal::add(const std::string& name, std::string_view bytes) { impl_->file.add(name, bytes); }
+std::size_t Journal::size() const { return impl_->file.size(); }
+const fs::path& Journal::path() const { return impl_->file.path(); }
+void Journal::remove() { impl_->file.remove(); }
+
+fs::path journal_of_folder(const fs::path& folder) {
+  fs::path journal = folder.lexically_normal();
+  if (!journal.has_filename()) journal = journal.parent_path();
+  return journal += ".part";
+}
+
+// --- progress ---
 
 void Pace::add(std::uint64_t rows) {
   if (hooks_.cancelled && hooks_.cancelled()) throw Cancelled();

@@ -1,10 +1,14 @@
-// The journal of an unfinished file of rows. Every finished block is appended, in any order, so that no finished row is
-// lost or waits in memory for a slower one. The journal is a CSV file with comment lines between the blocks.
+// Journals: finished work in a file, so that an interrupted run can continue.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "exactff/jobs.h"
@@ -14,41 +18,74 @@
 
 namespace exactff::jobs {
 
-class RowJournal {
- public:
-  // Opens and locks the journal of `file` for rows under this head. Throws InputError if another process is using the
-  // journal, if it holds rows of another request, or if it holds rows and `existing` allows neither to continue with
-  // them nor to replace them.
-  RowJournal(const std::filesystem::path& file, const Rows& rows, Existing existing, const RowHooks& hooks);
-  // Removes a journal without rows, since it has no use.
-  ~RowJournal();
-  RowJournal(const RowJournal&) = delete;
-  RowJournal& operator=(const RowJournal&) = delete;
+// What the blocks of a journal belong to.
+struct JournalForm {
+  std::string head;  // with everything that the finished work depends on
+  std::string word;  // of its blocks
+};
 
-  // From any thread. Appends the whole block or nothing of it. Throws InputError if the disk is full.
-  void append(Range range, std::string_view lines);
+// A file of finished pieces of work, each of which has a name: a head and blocks (blocks.h). All functions but those
+// that open, close and sync it may be called from any thread.
+class JournalFile {
+ public:
+  // Opens and locks the file. Damaged blocks count as not done. Throws InputError, and changes nothing, if the file
+  // cannot be written, if another process uses it, if it is not a journal, or if it holds work of another request or
+  // version, or any work at all, and `existing` does not say to replace it, or to continue. `note`: notes for the user.
+  JournalFile(const std::filesystem::path& path, JournalForm form, Existing existing,
+              const std::function<void(const std::string&)>& note);
+  // Removes a journal without blocks, since it has no use.
+  ~JournalFile();
+  JournalFile(const JournalFile&) = delete;
+  JournalFile& operator=(const JournalFile&) = delete;
+
+  // Appends the whole block or nothing of it. A block of the same name replaces the one before. Throws InputError if
+  // the disk is full.
+  void add(const std::string& name, std::string_view bytes);
+  [[nodiscard]] std::optional<std::string> find(const std::string& name) const;
+  void forget(const std::string& name);  // until the file is opened again
   // Makes everything that was appended before durable, even if the machine crashes. Called by one thread while others
   // append.
   void sync();
 
-  // In the order of their first rows. They do not overlap.
+  [[nodiscard]] std::size_t size() const;  // number of blocks
   [[nodiscard]] std::vector<Block> blocks() const;
-  [[nodiscard]] std::string read(const Block& block) const { return read_lines(file_, block); }
+  [[nodiscard]] std::string read(const Block& block) const { return read_bytes(file_, block); }
   [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
 
-  // Removes the journal. Called when the file is complete.
+  void remove() { file_.remove(); }  // when all work is done
+
+ private:
+  void take_over(Existing existing, const std::function<void(const std::string&)>& note);
+  void require_same(std::string_view beginning, Existing existing) const;
+  void begin();
+
+  const JournalForm form_;
+  File file_;
+  mutable std::mutex mutex_;
+  std::map<std::string, Block> blocks_;
+  std::uint64_t end_ = 0;
+  std::uint64_t synced_ = 0;
+};
+
+// The journal of an unfinished file of rows. Finished rows are appended in any order, so that none is lost or waits in
+// memory for a slower one.
+class RowJournal {
+ public:
+  // Opens the journal of `file` for rows under this head. Blocks that cannot hold rows of this request count as not
+  // done.
+  RowJournal(const std::filesystem::path& file, const Rows& rows, Existing existing, const RowHooks& hooks);
+
+  void append(Range range, std::string_view lines) { file_.add(name_of(range), lines); }  // from any thread
+  void sync() { file_.sync(); }
+
+  // In the order of their first rows. They do not overlap.
+  [[nodiscard]] std::vector<Block> blocks() const;
+  [[nodiscard]] std::string read(const Block& block) const { return file_.read(block); }
+  [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
   void remove() { file_.remove(); }
 
  private:
-  void take_over(const Rows& rows, Existing existing, const RowHooks& hooks);
-  void begin(const std::string& head);
-  void keep_usable(std::vector<Block> found, const Rows& rows, const RowHooks& hooks);
-
-  File file_;
-  std::mutex mutex_;
-  std::vector<Block> blocks_;
-  std::uint64_t end_ = 0;
-  std::uint64_t synced_ = 0;
+  JournalFile file_;
 };
 
 // Reports progress in rows. Throws Cancelled if the hooks request it.

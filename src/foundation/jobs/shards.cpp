@@ -26,9 +26,10 @@ struct ShardFile {
 
 void read_chunks(ShardFile& shard, std::uint64_t head_bytes) {
   const Plan& plan = shard.head.plan;
-  Blocks found = find_blocks(shard.file, head_bytes);
+  Blocks found = find_blocks(shard.file, head_bytes, kRowsWord);
   bool whole = found.damaged == 0 && found.end == shard.file.size() && found.list.size() == plan.shard_chunks();
-  for (std::size_t i = 0; whole && i < found.list.size(); ++i) whole = found.list[i].range == plan.chunk_of_shard(i);
+  for (std::size_t i = 0; whole && i < found.list.size(); ++i)
+    whole = range_of(found.list[i]) == plan.chunk_of_shard(i);
   if (!whole) {
     refuse(shard.file.path(),
            "is damaged: " + std::to_string(found.list.size()) + " of its " +
@@ -115,11 +116,11 @@ void take_chunks(const ShardFiles& shards, const RowHooks& hooks, const MergedSh
   for (std::uint64_t chunk = 0; chunk < plan.chunks(); ++chunk) {
     const ShardFile& shard = shards.at(chunk % plan.shard.count + 1);
     const Block& block = shard.blocks[chunk / plan.shard.count];
-    if (!take(block.range, read_lines(shard.file, block))) {
+    if (!take(range_of(block), read_bytes(shard.file, block))) {
       refuse(shard.file.path(), "changed while it was being read", "every " + plan.kind.row + " is needed",
              "try again");
     }
-    pace.add(block.range.rows);
+    pace.add(range_of(block).rows);
   }
 }
 

@@ -1,3 +1,5 @@
+#include "jobs/team.h"
+
 #include <algorithm>
 #include <condition_variable>
 #include <cstring>
@@ -10,18 +12,20 @@
 #include <utility>
 
 #include "files/parallel.h"
-#include "jobs/leader.h"
+#include "jobs/compute.h"
 
 namespace exactff::jobs {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using files::WorkerPool;
 
 enum class Word : char { kHello, kAsk, kRows, kTrouble, kCeased, kBye, kWork, kCease, kDismiss };
 
-constexpr auto kPause = std::chrono::milliseconds(1);  // between checks for messages
-constexpr double kWorkAhead = 0.02;                    // seconds that the rows waiting at a follower should last
-constexpr std::uint64_t kMostPieces = 64;              // the limit of waiting pieces for each thread
+constexpr auto kPause = std::chrono::milliseconds(1);        // between checks for messages
+constexpr auto kWhileIdle = std::chrono::milliseconds(100);  // between checks whether to end
+constexpr double kWorkAhead = 0.02;                          // seconds that the rows waiting at a follower should last
+constexpr std::uint64_t kMostPieces = 64;                    // the limit of waiting pieces for each thread
 
 // A message is a word followed by its data.
 class Writer {
@@ -116,11 +120,11 @@ int fair_threads(const Team& team) {
 
 Leader::Leader(Team& team, const Rows& rows) : team_(team), head_(rows.head()) {}
 
-void Leader::attend(const Workers::Take& take, const Workers::Deliver& deliver) {
+void Leader::attend(const TakeRange& take, const DeliverRows& deliver) {
   while (const std::optional<Message> message = team_.receive()) answer(*message, take, deliver);
 }
 
-void Leader::answer(const Message& message, const Workers::Take& take, const Workers::Deliver& deliver) {
+void Leader::answer(const Message& message, const TakeRange& take, const DeliverRows& deliver) {
   Reader reader(message.text);
   switch (reader.word()) {
     case Word::kHello: {
@@ -144,7 +148,7 @@ void Leader::answer(const Message& message, const Workers::Take& take, const Wor
   }
 }
 
-void Leader::give_work(int rank, std::uint64_t pieces, const Workers::Take& take) {
+void Leader::give_work(int rank, std::uint64_t pieces, const TakeRange& take) {
   Writer work(Word::kWork);
   for (; pieces > 0; --pieces) {
     const std::optional<Range> range = take();
@@ -154,7 +158,7 @@ void Leader::give_work(int rank, std::uint64_t pieces, const Workers::Take& take
   team_.send(rank, std::move(work).text());
 }
 
-void Leader::cease(const Workers::Deliver& deliver) {
+void Leader::cease(const DeliverRows& deliver) {
   for (int rank = 1; rank < team_.size(); ++rank) team_.send(rank, std::move(Writer(Word::kCease)).text());
   for (int left = team_.size() - 1; left > 0;) {
     const std::optional<Message> message = team_.receive();
@@ -200,9 +204,12 @@ class Desk {
     waiting_.clear();
     changed_.notify_all();
   }
-  std::optional<Range> take() {
+  // Waits for a range; nothing after close(), or if the pool has stopped, perhaps since not all threads could start.
+  std::optional<Range> take(const WorkerPool::Worker& worker) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return closed_ || !waiting_.empty(); });
+    const auto may_go_on = [&] { return closed_ || !waiting_.empty() || worker.stopped(); };
+    while (!changed_.wait_for(lock, kWhileIdle, may_go_on)) {
+    }
     if (waiting_.empty()) return std::nullopt;
     const Range range = waiting_.front();
     waiting_.pop_front();
@@ -266,22 +273,24 @@ class Follower {
   void work(const Rows& rows) {
     threads_ = static_cast<std::uint64_t>(rows.plan().threads);
     Desk desk;
-    Workers workers(
-        rows, rows.plan().threads, hooks_, [&desk] { return desk.take(); },
-        [&desk](Finished finished) { desk.deliver(std::move(finished)); });
+    WorkerPool pool(rows.plan().threads, {{}, hooks_.cancelled}, [&](WorkerPool::Worker& worker) {
+      compute_rows(
+          rows, hooks_.slow_seconds, [&] { return desk.take(worker); },
+          [&](Finished finished) { desk.deliver(std::move(finished)); }, worker);
+    });
     const auto send_finished = [&] {
       for (const Finished& finished : desk.collect()) team_.send(0, to_text(finished));
     };
-    while (!told_to_stop_ && !workers.stopped()) {
+    while (!told_to_stop_ && !pool.stopped()) {
       listen(desk);
       ask(desk);
       send_finished();
     }
-    workers.stop();
+    pool.stop();
     desk.close();
-    while (!workers.wait_for(kPause)) send_finished();
+    while (!pool.wait_for(kPause)) send_finished();
     send_finished();
-    workers.rethrow();
+    pool.rethrow();
   }
 
   void listen(Desk& desk) {

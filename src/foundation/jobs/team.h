@@ -14,8 +14,14 @@
 // A leader that throws must still dismiss the followers; only then may the processes end.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "jobs/rows.h"
 
 namespace exactff::jobs {
 
@@ -38,6 +44,50 @@ class Team {
 
 // The default number of threads of a process: the processes of a machine share its cores.
 [[nodiscard]] int fair_threads(const Team& team);
+
+// --- their work ---
+
+struct SlowRow {
+  std::uint64_t row = 0;
+  double seconds = 0.0;
+};
+
+// Finished rows, as lines.
+struct Finished {
+  Range range;
+  std::string lines;
+  std::vector<SlowRow> slow;
+};
+
+using TakeRange = std::function<std::optional<Range>()>;  // may wait; nothing if no more are left
+using DeliverRows = std::function<void(Finished)>;        // from any thread
+
+// The leader's communication while rows are computed.
+class Leader {
+ public:
+  Leader(Team& team, const Rows& rows);
+
+  // Answers the messages that have arrived. Throws the failure that a follower has reported: InputError if its input is
+  // the cause, Cancelled if it was interrupted.
+  void attend(const TakeRange& take, const DeliverRows& deliver);
+  // Whether every follower has said hello and sees the same files.
+  [[nodiscard]] bool all_here() const { return here_ == team_.size() - 1; }
+  // Makes the followers stop, and collects what they have finished. Does not throw the failures that they may still
+  // report.
+  void cease(const DeliverRows& deliver);
+
+ private:
+  void answer(const Message& message, const TakeRange& take, const DeliverRows& deliver);
+  void give_work(int rank, std::uint64_t pieces, const TakeRange& take);
+
+  Team& team_;
+  const std::string head_;
+  int here_ = 0;
+};
+
+// Runs a follower, that is, any other rank. `make_rows` must make the same rows as the leader's; what it throws is sent
+// to the leader. Only the hooks `cancelled` and slow_seconds are used. Returns the exit code.
+int follow(Team& team, const std::function<std::unique_ptr<Rows>()>& make_rows, const RowHooks& hooks);
 
 // Ends the followers of this team with an exit code. Waits until each has sent bye.
 void dismiss(Team& team, int exit_code);

@@ -1,7 +1,7 @@
 #include "page/chapter.h"
 
-#include "files/fields.h"
 #include "files/parallel.h"
+#include "jobs/kept_work.h"
 #include "page/gnuplot.h"
 
 namespace exactff::page {
@@ -61,13 +61,13 @@ void fields(Words& words, Chapter& chapter) {
 }  // namespace
 
 std::string to_bytes(Chapter chapter) {
-  files::WordWriter words;
+  jobs::WordWriter words;
   fields(words, chapter);
   return words.bytes();
 }
 
 std::optional<Chapter> chapter_of(std::string_view bytes) {
-  files::WordReader words(bytes);
+  jobs::WordReader words(bytes);
   Chapter chapter;
   fields(words, chapter);
   if (!words.complete()) return std::nullopt;

@@ -4,8 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "files/unfinished.h"
-#include "files/work_folder.h"
+#include "files/file.h"
 
 namespace exactff::page {
 

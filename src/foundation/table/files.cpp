@@ -10,7 +10,7 @@
 
 #include "exactff/table.h"
 #include "files/file.h"
-#include "files/npz_file.h"
+#include "files/numpy.h"
 #include "kernel/float_environment.h"
 #include "table/csv.h"
 #include "text/escape.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "files/apart.h"
+#include "files/file.h"
 
 namespace exactff::cli {
 

@@ -19,7 +19,7 @@
 #include <utility>
 
 #include "exactff/error.h"
-#include "files/unfinished.h"
+#include "files/file.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 

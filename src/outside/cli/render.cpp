@@ -19,7 +19,7 @@
 #include "cli/process.h"
 #include "exactff/slips.h"
 #include "files/file.h"
-#include "files/npy_file.h"
+#include "files/numpy.h"
 #include "flags/file_options.h"
 #include "flags/receivers.h"
 #include "flags/scene.h"

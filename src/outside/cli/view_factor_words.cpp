@@ -11,7 +11,6 @@
 #include "cli/output.h"
 #include "exactff/slips.h"
 #include "flags/values.h"
-#include "matrix/entry_jobs.h"
 #include "text/escape.h"
 #include "text/names.h"
 #include "text/phrases.h"
@@ -160,20 +159,14 @@ std::vector<Problem> problems_of_width(const Scene& scene, const matrix::Matrix&
 
 void LateNote::follow(const Progress& progress) {
   if (!done_before_) done_before_ = progress.done;
-  if (progress.total <= *done_before_) return;
-  share_done_ =
-      static_cast<double>(progress.done - *done_before_) / static_cast<double>(progress.total - *done_before_);
-}
-
-void LateNote::tell_if_late() {
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-  if (elapsed.count() < kLate || told_) return;
-  const double left = elapsed.count() * (1.0 - share_done_) / share_done_;  // infinite as long as nothing is done
-  if (left < kLate) return;
-  const std::string slow = matrix::EntryJobs::slow_of_thread(kSlow);
-  if (slow.empty() && elapsed.count() < kLate + kSlow) return;  // another thread may have a name to tell
-  if (told_.exchange(true)) return;
-  const std::string what = slow.empty() ? "" : "It is slow " + text::printable(slow) + ". ";
+  if (told_ || elapsed.count() < kLate || progress.total <= *done_before_) return;
+  const double share_done =
+      static_cast<double>(progress.done - *done_before_) / static_cast<double>(progress.total - *done_before_);
+  const double left = elapsed.count() * (1.0 - share_done) / share_done;  // infinite as long as nothing is done
+  if (left < kLate || (progress.slow.empty() && elapsed.count() < kNameable)) return;
+  told_ = true;
+  const std::string what = progress.slow.empty() ? "" : "It is slow " + text::printable(progress.slow) + ". ";
   const std::string clear_line = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
   std::cerr << clear_line + "note: this takes more than " + text::short_number(kLate) + " s. " + what + text_ + '\n';
 }

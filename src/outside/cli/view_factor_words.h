@@ -2,7 +2,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <optional>
@@ -48,29 +47,23 @@ class LateNote {
  public:
   explicit LateNote(std::string text) : text_(std::move(text)) {}
 
-  void follow(const Progress& progress);  // from one thread at a time
-  void tell_if_late();                    // from any thread, every few milliseconds
+  void follow(const Progress& progress);  // several times a second
 
  private:
-  static constexpr double kLate = 5.0, kSlow = 1.0;  // seconds, of all the work and of a pair
+  static constexpr double kLate = 5.0, kNameable = 6.0;  // seconds; after the second, any pair that is slow has a name
 
   const std::string text_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  std::atomic<double> share_done_ = 0.0;
   std::optional<std::size_t> done_before_;  // by a run that is continued
-  std::atomic<bool> told_ = false;
+  bool told_ = false;
 };
 
-// Of these hooks (Hooks, jobs::RowHooks), those that also serve the note. Keeps a reference to it.
+// These hooks (Hooks, jobs::RowHooks), of which `progress` also serves the note. Keeps a reference to it.
 template <class Kind>
 Kind with_note(LateNote& note, Kind hooks) {
   hooks.progress = [&note, show = std::move(hooks.progress)](const Progress& progress) {
     note.follow(progress);
     show(progress);
-  };
-  hooks.cancelled = [&note, is_cancelled = std::move(hooks.cancelled)] {
-    note.tell_if_late();
-    return is_cancelled();
   };
   return hooks;
 }

@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "exactff/jobs.h"
-#include "files/apart.h"
+#include "files/file.h"
 #include "text/escape.h"
 #include "text/names.h"
 #include "text/phrases.h"

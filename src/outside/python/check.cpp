@@ -5,7 +5,6 @@
 
 #include "check/report.h"
 #include "exactff/truth.h"
-#include "files/apart.h"
 #include "files/file.h"
 #include "flags/values.h"
 #include "python/bindings.h"

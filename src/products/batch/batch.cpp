@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "batch/crew.h"
+#include "files/parallel.h"
 #include "text/refuse.h"
 #include "whole_view/light.h"
 
@@ -12,6 +12,8 @@ namespace {
 
 // Starting threads takes as long as a few pairs in a simple scene.
 constexpr std::size_t kFewPairs = 16;
+
+using files::Body;
 
 // What a thread keeps from receiver to receiver, only to avoid reallocation.
 struct ExactMemory {
@@ -27,6 +29,14 @@ struct MethodMemory {
 };
 
 std::size_t few(std::size_t sources) { return sources == 0 ? kFewPairs : kFewPairs / sources; }
+
+void share(std::size_t receivers, std::size_t few, const char* stage, const Run& run,
+           const std::function<Body()>& make_body) {
+  constexpr std::size_t kLargestBlock = 64;  // receivers, of which some take microseconds
+  const files::Loop loop{
+      .count = receivers, .threads = run.threads, .stage = stage, .few = few, .largest_block = kLargestBlock};
+  files::parallel_for(loop, run.hooks, make_body);
+}
 
 }  // namespace
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "check/report.h"
-#include "files/work_folder.h"
+#include "files/file.h"
 #include "kernel/float_environment.h"
 #include "page/gnuplot.h"
 #include "text/phrases.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "files/read_npy.h"
+#include "files/numpy.h"
 #include "kernel/poll.h"
 #include "text/phrases.h"
 #include "text/refuse.h"

@@ -66,8 +66,10 @@ bool take_kept(std::string_view text, const std::vector<std::size_t>& entries, c
 // A pair counts for all of its entries.
 Hooks shifted(const AgainHooks& with, std::size_t entries) {
   const auto show = [&with, entries](const Progress& progress) {
-    const std::size_t done = progress.done * entries / std::max<std::size_t>(progress.total, 1);
-    if (with.hooks.progress) with.hooks.progress({progress.stage, with.done + done, with.total});
+    Progress shown = progress;
+    shown.done = with.done + progress.done * entries / std::max<std::size_t>(progress.total, 1);
+    shown.total = with.total;
+    if (with.hooks.progress) with.hooks.progress(shown);
   };
   return {.progress = show, .cancelled = with.hooks.cancelled};
 }
@@ -89,9 +91,8 @@ void compute_again(const Scene& scene, const Again& again, const AgainHooks& wit
     factors.entries[place] = f;
     take(place);
   };
-  const int threads = with.threads > 0 ? with.threads : files::usable_threads();
   files::parallel_for(
-      wanted.size(), threads, "view factors again", shifted(with, again.entries.size()), [&](std::size_t i) {
+      wanted.size(), with.threads, "view factors again", shifted(with, again.entries.size()), [&](std::size_t i) {
         const std::vector<std::size_t>& entries = pairs.entries_of(wanted[i]);
         const std::string name = name_of(scene, again.factors, part.entry_in_all(entries.front(), width));
         const auto kept = with.journal != nullptr ? with.journal->find(name) : std::nullopt;

@@ -64,10 +64,14 @@ Matrix compute(const Scene& scene, std::span<const Selection> from, std::span<co
   if (options.backs) result.back.resize(from.size());
   if (options.open) result.open.resize(from.size());
   if (jobs.has_buried()) result.buried.resize(from.size());
-  const int threads = options.threads > 0 ? options.threads : files::usable_threads();
-  files::parallel_for(jobs.count(), threads, "view factors", hooks, [&](std::size_t job) {
+  const files::Loop loop{
+      .count = jobs.count(), .threads = options.threads, .stage = "view factors", .name = [&](std::size_t job) {
+        return jobs.name(job);
+      }};
+  const files::Body body = [&](std::size_t job) {
     jobs.compute(job, [&](std::size_t entry, const ViewFactor& f) { entry_of(result, entry) = f; });
-  });
+  };
+  files::parallel_for(loop, hooks, [&] { return body; });
   return result;
 }
 

@@ -1,35 +1,12 @@
 #include "matrix/entry_jobs.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "kernel/float_environment.h"
 #include "text/text_lines.h"
 
 namespace exactff::matrix {
 namespace {
-
-// What this thread is computing.
-class AtWork {
- public:
-  AtWork(const EntryJobs& jobs, std::size_t job) : jobs_(jobs), job_(job) { of_thread = this; }
-  ~AtWork() { of_thread = nullptr; }
-  AtWork(const AtWork&) = delete;
-  AtWork& operator=(const AtWork&) = delete;
-
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-  [[nodiscard]] std::string name() const { return jobs_.name(job_); }
-
-  static thread_local const AtWork* of_thread;
-
- private:
-  const EntryJobs& jobs_;
-  const std::size_t job_;
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-thread_local const AtWork* AtWork::of_thread = nullptr;
 
 bool some_is_buried(const view_factors::Pairs& pairs, std::size_t rows) {
   for (std::size_t row = 0; row < rows; ++row) {
@@ -78,7 +55,6 @@ std::vector<std::size_t> EntryJobs::entries_of(std::size_t job) const {
 
 void EntryJobs::compute(std::size_t job, const std::function<void(std::size_t, const ViewFactor&)>& take) const {
   const kernel::StandardArithmetic arithmetic;
-  const AtWork at_work(*this, job);
   const std::vector<std::size_t> entries = entries_of(job);
   if (job < pairs_.count()) {
     std::size_t next = 0;
@@ -106,11 +82,6 @@ EntryJobs::Column EntryJobs::kind_of(std::size_t column) const {
   if (column < to_.size()) return Column::kOfPatch;
   if (has_buried_ && column + 1 == width_) return Column::kOfBuried;
   return to_backs_ && column == to_.size() ? Column::kOfBacks : Column::kOfSky;
-}
-
-std::string EntryJobs::slow_of_thread(double seconds) {
-  const AtWork* const at_work = AtWork::of_thread;
-  return at_work != nullptr && at_work->seconds() >= seconds ? at_work->name() : std::string();
 }
 
 std::string EntryJobs::name_of_column(std::size_t column) const {

@@ -30,8 +30,6 @@ class EntryJobs {
   void compute(std::size_t job, const std::function<void(std::size_t entry, const ViewFactor& factor)>& take) const;
   // "from 'floor' to 'light'", for messages.
   [[nodiscard]] std::string name(std::size_t job) const;
-  // The name of the job that this thread is computing, if it has taken so long so far; otherwise nothing.
-  [[nodiscard]] static std::string slow_of_thread(double seconds);
   // Sets all but the factor.
   void describe(std::size_t number, Entry& entry) const;
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "exactff/matrix.h"
-#include "files/npz_file.h"
+#include "files/numpy.h"
 #include "kernel/float_environment.h"
 #include "matrix/row_facts.h"
 

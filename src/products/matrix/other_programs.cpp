@@ -11,7 +11,7 @@
 #include <fstream>
 #include <string_view>
 
-#include "files/read_npy.h"
+#include "files/numpy.h"
 #include "text/csv_dialect.h"
 #include "text/names.h"
 #include "text/phrases.h"

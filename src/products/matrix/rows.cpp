@@ -4,10 +4,10 @@
 #include <optional>
 #include <utility>
 
-#include "files/apart.h"
+#include "files/file.h"
 #include "files/parallel.h"
 #include "jobs/compute.h"
-#include "jobs/leader.h"
+#include "jobs/team.h"
 #include "kernel/float_environment.h"
 #include "matrix/columns.h"
 #include "matrix/team.h"

@@ -55,7 +55,7 @@ void set_variation(const Scene& scene, Solution& solution, int threads, const Ho
   if (whole_view::problem_of_strength(scene, sum_of(values.value), {})) return;
   const Gather gather(scene, values, {});
   std::vector<Rgb> found(patches);
-  files::parallel_for(patches, threads > 0 ? threads : files::usable_threads(), "patches", hooks, [&](std::size_t i) {
+  files::parallel_for(patches, threads, "patches", hooks, [&](std::size_t i) {
     whole_view::Light::Results results;
     found[i] = largest_difference(scene, gather, values.patches[i], values.value[i], results);
   });

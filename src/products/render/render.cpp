@@ -224,9 +224,8 @@ Picture render(const Request& request, const Hooks& hooks, jobs::Journal* journa
   const jobs::KeptWork kept(journal, job.hash());
   Brushes brushes(job);
   std::mutex mutex;
-  const int threads = request.threads > 0 ? request.threads : files::usable_threads();
   const std::string stage = request.method ? "tiles, " + request.method->method->name : "tiles";
-  files::parallel_for(tiles.count(), threads, stage, hooks, [&](std::size_t index) {
+  files::parallel_for(tiles.count(), request.threads, stage, hooks, [&](std::size_t index) {
     TileResult result;
     const Tile tile = tiles[index];
     kept.get(

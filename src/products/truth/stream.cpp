@@ -3,10 +3,11 @@
 #include <chrono>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <ostream>
 
 #include "exactff/truth.h"
-#include "jobs/workers.h"
+#include "jobs/compute.h"
 #include "kernel/float_environment.h"
 #include "text/refuse.h"
 #include "truth/rows.h"
@@ -23,14 +24,16 @@ class Stream {
 
   void run(Summary& summary) {
     put(rows_.head());
-    jobs::Workers workers(
-        rows_, rows_.plan().threads, hooks_, [this] { return schedule_.next(); },
-        [this](jobs::Finished finished) { keep(std::move(finished)); });
+    files::WorkerPool pool(rows_.plan().threads, {{}, hooks_.cancelled}, [this](files::WorkerPool::Worker& worker) {
+      jobs::compute_rows(
+          rows_, hooks_.slow_seconds, [this] { return schedule_.next(); },
+          [this](jobs::Finished finished) { keep(std::move(finished)); }, worker);
+    });
     for (bool ended = false; !ended;) {
-      ended = workers.wait_for(kBetweenWrites);
-      write_what_is_next(summary);
+      ended = pool.wait_for(kBetweenWrites);
+      write_what_is_next(summary, pool.slow_step(files::kSlowStep));
     }
-    workers.rethrow();
+    pool.rethrow();
     summary.rows_by_status = tally_.by_status();
   }
 
@@ -41,7 +44,7 @@ class Stream {
     waiting_.emplace(finished.range.first, std::move(finished));
   }
 
-  void write_what_is_next(Summary& summary) {
+  void write_what_is_next(Summary& summary, std::optional<std::uint64_t> slow_row) {
     std::map<std::uint64_t, jobs::Finished> ready;
     std::uint64_t done = 0;
     {
@@ -59,7 +62,9 @@ class Stream {
     }
     out_.flush();
     require_written();
-    if (hooks_.progress) hooks_.progress({"rows", done, rows_.count()});
+    if (!hooks_.progress) return;
+    const std::string slow = slow_row ? rows_.name(*slow_row) : std::string();
+    hooks_.progress({"rows", done, rows_.count(), slow});
   }
 
   void tell_slow(const jobs::Finished& finished, Summary& summary) {

@@ -2,9 +2,9 @@
 #include <memory>
 #include <utility>
 
-#include "files/apart.h"
+#include "files/file.h"
 #include "jobs/compute.h"
-#include "jobs/leader.h"
+#include "jobs/team.h"
 #include "kernel/float_environment.h"
 #include "truth/rows.h"
 #include "truth/team.h"

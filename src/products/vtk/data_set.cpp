@@ -9,7 +9,7 @@
 #include <span>
 #include <string_view>
 
-#include "files/little_endian.h"
+#include "files/numpy.h"
 #include "files/parallel.h"
 #include "text/encoding.h"
 #include "text/escape.h"

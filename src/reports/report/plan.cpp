@@ -60,7 +60,9 @@ Hooks with_title(const PlannedScene& scene, const Hooks& hooks) {
   if (scene.name.empty() || !hooks.progress) return hooks;
   return {[&](const Progress& progress) {
             const std::string stage = scene.title + ": " + std::string(progress.stage);
-            hooks.progress({stage, progress.done, progress.total});
+            Progress shown = progress;
+            shown.stage = stage;
+            hooks.progress(shown);
           },
           hooks.cancelled};
 }

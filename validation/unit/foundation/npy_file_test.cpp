@@ -1,6 +1,4 @@
 // NumPy files, byte by byte. validation/vtk reads some with NumPy.
-#include "files/npy_file.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "exactff/error.h"
+#include "files/numpy.h"
 #include "support/program.h"
 
 namespace exactff::files {

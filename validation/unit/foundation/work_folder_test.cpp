@@ -1,6 +1,4 @@
 // Hidden folders of killed processes, of living ones, of older versions and of other programs.
-#include "files/work_folder.h"
-
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,6 +9,7 @@
 #include <string>
 
 #include "exactff/error.h"
+#include "files/file.h"
 #include "page/output_folder.h"
 #include "support/folder.h"
 #include "support/program.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "exactff/check.h"
-#include "files/npy_file.h"
+#include "files/numpy.h"
 #include "support/program.h"
 #include "text/phrases.h"
 

@@ -7,8 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "files/npy_file.h"
-#include "files/read_npy.h"
+#include "files/numpy.h"
 #include "support/program.h"
 
 namespace exactff {

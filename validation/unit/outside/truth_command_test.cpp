@@ -136,7 +136,7 @@ TEST_F(TruthCommand, AFullDiskCostsNoRow) {
   };
   const RunningProgram first = start(kGrid, {}, limited_to(50'000));
   EXPECT_EQ(first.wait(), 2);
-  EXPECT_NE(first.error().find("truth.csv.part: cannot be written: File too large (it contains the rows finished so "
+  EXPECT_NE(first.error().find("truth.csv.part: cannot be written: File too large (it contains what is finished so "
                                "far); free some space, then continue with --resume"),
             std::string::npos)
       << first.error();

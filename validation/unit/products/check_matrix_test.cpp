@@ -10,8 +10,7 @@
 
 #include "check/report.h"
 #include "exactff/check.h"
-#include "files/npy_file.h"
-#include "files/read_npy.h"
+#include "files/numpy.h"
 #include "support/complaint.h"
 #include "support/program.h"
 

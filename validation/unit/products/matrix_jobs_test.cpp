@@ -128,7 +128,7 @@ TEST_F(MatrixJobs, AreReadToTheSameBits) {
 TEST_F(MatrixJobs, AnInterruptedRunGoesOn) {
   (void)journal_of_an_interrupted_run();
   EXPECT_FALSE(fs::exists(file_));
-  EXPECT_NE(complaint([&] { write(request(), file_); }).find("contains the finished rows of an interrupted run"),
+  EXPECT_NE(complaint([&] { write(request(), file_); }).find("contains the finished work of an interrupted run"),
             std::string::npos);
   const jobs::Summary summary = write(request(), file_, Existing::kResume);
   EXPECT_GT(summary.resumed, 0U);

@@ -15,7 +15,7 @@
 #include "exactff/exr.h"
 #include "exactff/scene_files.h"
 #include "exactff/truth.h"
-#include "files/npy_file.h"
+#include "files/numpy.h"
 #include "generate/plain_scene.h"
 #include "support/complaint.h"
 #include "support/holds.h"

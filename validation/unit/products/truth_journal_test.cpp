@@ -103,7 +103,7 @@ TEST_F(Truth, ADamagedBlockIsComputedAgainAndTheOthersAreNot) {
     const Summary summary = write(request(2), file_, Existing::kResume, hooks);
     ASSERT_EQ(text_of(file_), whole) << "damaged at " << at;
     ASSERT_TRUE(summary.resumed == 4 || summary.resumed == 5) << "damaged at " << at << ": " << summary.resumed;
-    ASSERT_NE(note.find("incomplete or damaged; their rows are computed again"), std::string::npos) << note;
+    ASSERT_NE(note.find("incomplete or damaged; what they held is computed again"), std::string::npos) << note;
   }
 }
 
@@ -116,7 +116,7 @@ TEST_F(Truth, BlocksThatDoNotBelongAreLeftOut) {
   {
     RowJournal journal(file_, rows, Existing::kResume, {});
     journal.append({64, 1}, line);
-    journal.append({64, 1}, line);          // doubled
+    journal.append({64, 1}, line);          // doubled: counts once
     journal.append({0, 1}, line);           // of another shard
     journal.append({127, 2}, line + line);  // of two chunks
     journal.append({66, 2}, line);          // fewer rows than it claims
@@ -127,7 +127,7 @@ TEST_F(Truth, BlocksThatDoNotBelongAreLeftOut) {
   RowHooks hooks;
   hooks.note = [&](const std::string& text) { note = text; };
   EXPECT_EQ(write(shard(10, 2, 3), file_, Existing::kResume, hooks).resumed, 1U);
-  EXPECT_NE(note.find("6 blocks cannot be used here"), std::string::npos) << note;
+  EXPECT_NE(note.find("5 blocks cannot be used here"), std::string::npos) << note;
   const std::string resumed = text_of(file_);
   write(shard(10, 2, 3), file_, Existing::kReplace);
   EXPECT_EQ(text_of(file_), resumed);
@@ -141,7 +141,7 @@ TEST_F(Truth, NobodysWorkIsDestroyed) {
   fs::remove(file_);
   interrupt(request(10), 100);
   EXPECT_NE(
-      refusal(request(10), Existing::kRefuse).find("truth.csv.part: contains the finished rows of an interrupted run"),
+      refusal(request(10), Existing::kRefuse).find("truth.csv.part: contains the finished work of an interrupted run"),
       std::string::npos);
   EXPECT_EQ(refusal(request(10), Existing::kReplace), "");
   expect_only({"truth.csv"});
@@ -163,14 +163,26 @@ TEST_F(Truth, ACompleteFileIsLeftAsItIs) {
 }
 
 TEST_F(Truth, AForeignFileIsNoJournal) {
-  for (const char* text : {"dear diary\n", "# exactff 0.0.1 truth\nreceiver\n", "\n", "#"}) {
+  for (const char* text : {"dear diary\n", "\n"}) {
+    for (const Existing existing : {Existing::kRefuse, Existing::kResume, Existing::kReplace}) {
+      write_text(journal_, text);
+      EXPECT_NE(refusal(request(2), existing).find("truth.csv.part: already exists, and exactff did not write it"),
+                std::string::npos);
+      EXPECT_EQ(text_of(journal_), text);
+    }
+  }
+  write_text(journal_, "#");  // may be the beginning of our journal
+  EXPECT_EQ(refusal(request(2), Existing::kResume), "");
+}
+
+TEST_F(Truth, AJournalOfAnotherVersionIsOnlyReplaced) {
+  for (const char* text : {"# exactff 0.0.1 truth\nreceiver\n", "exactff journal 1, version 0.0.1\n"}) {
     write_text(journal_, text);
-    if (std::string(text) == "#") continue;  // may be the beginning of our journal
-    EXPECT_NE(refusal(request(2), Existing::kResume)
-                  .find("truth.csv.part:1: belongs to a different request: it has no head of this version"),
+    EXPECT_NE(refusal(request(2), Existing::kResume).find("truth.csv.part: was written by another version of exactff"),
               std::string::npos);
     EXPECT_EQ(text_of(journal_), text);
   }
+  EXPECT_EQ(refusal(request(2), Existing::kReplace), "");
 }
 
 // The request of a journal, changed in every way that affects its rows.
@@ -204,7 +216,7 @@ TEST_F(Truth, AJournalOfAnotherRequestIsNamedWithItsDifference) {
   std::string old_version = journal;
   old_version.replace(old_version.find(kVersion), std::string(kVersion).size(), "0.0.9");
   write_text(journal_, old_version);
-  EXPECT_NE(refusal(request(10), Existing::kResume).find("it has another version of exactff"), std::string::npos);
+  EXPECT_NE(refusal(request(10), Existing::kResume).find("was written by another version"), std::string::npos);
 }
 
 TEST_F(Truth, TwoProcessesCannotShareAJournal) {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "jobs/blocks.h"
-#include "jobs/workers.h"
+#include "jobs/compute.h"
 #include "support/complaint.h"
 #include "support/folder.h"
 #include "support/program.h"
@@ -32,7 +32,10 @@ using validation::write_text;
 
 TEST_F(Truth, TheScheduleDealsOutWhatIsNotDone) {
   const Rows rows(request(10));  // 200 rows, the last chunk of 8
-  const std::vector<Block> done = {{{0, 3}, 0, 0}, {{10, 54}, 0, 0}, {{130, 62}, 0, 0}, {{192, 8}, 0, 0}};
+  std::vector<Block> done;
+  for (const Range range : {Range{0, 3}, Range{10, 54}, Range{130, 62}, Range{192, 8}}) {
+    done.push_back({name_of(range)});
+  }
   Schedule schedule(rows, done);
   EXPECT_EQ(schedule.rows(), 73U);
   EXPECT_EQ(schedule.next(), (Range{3, 7}));

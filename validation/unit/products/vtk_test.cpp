@@ -9,7 +9,7 @@
 #include <fstream>
 #include <set>
 
-#include "files/little_endian.h"
+#include "files/numpy.h"
 #include "generate/plain_scene.h"
 #include "support/program.h"
 #include "support/random_scenes.h"
