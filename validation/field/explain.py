@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Tests the explanations of the errors that openfoam.py and calculix.py find, and names some of them. Two minutes.
 
-Usage: /usr/bin/python3 -B validation/field/explain.py build/exactff, after openfoam.sh and calculix.sh
+Usage: /usr/bin/python3 -B validation/field/explain.py build/exactff, after measure.sh openfoam and measure.sh calculix
 
 The empty cube is the room with cube without its cube: our own sums stand beside the programs' factors of its walls.
 """
