@@ -46,16 +46,6 @@ void check_match(const check::Truth& truth, const std::filesystem::path& candida
   check_report(check::judge(truth, measured, {.max_abs = 1e-3, .quantiles = {{0.5, 1e-3}}, .per_source = true}));
 }
 
-// Tries every way of matching, even if the others are refused.
-template <class Work>
-void attempt(const Work& work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    require_words(error);
-  }
-}
-
 constexpr const char* kMatrix =
     "from,to,factor,lower,upper,claim,accurate,area_from,area_to,cells,event_cells\n"
     "a,a,0,0,0,zero,yes,1,1,0,0\na,b,0.5,0.4,0.6,statistical,no,1,2,9,0\na,(open),0.5,0.5,0.5,topology-proved,yes,1,,9,"
@@ -64,7 +54,7 @@ constexpr const char* kMatrix =
     "9,0\n";
 
 void check_matrices(const std::filesystem::path& truth, const std::filesystem::path& candidate) {
-  attempt([&] {
+  unless_refused([&] {
     const check::Matrices both = check::read_matrices(truth, candidate, {}, true);
     const check::Report report = check::judge(both.truth, both.values, {.max_abs = 1e-3, .per_source = true});
     check_report(report, both.facts);
@@ -72,6 +62,7 @@ void check_matrices(const std::filesystem::path& truth, const std::filesystem::p
   });
 }
 
+// Every way of matching is tried, even if the others are refused.
 void check_files(const std::string& truth_text, const std::string& candidate_text) {
   static const TemporaryDirectory directory;
   const auto truth_file = directory.write("truth.csv", truth_text);
@@ -79,14 +70,14 @@ void check_files(const std::string& truth_text, const std::string& candidate_tex
   static const auto matrix_file = directory.write("matrix.csv", kMatrix);
   check_matrices(matrix_file, candidate_file);
   check_matrices(truth_file, candidate_file);
-  attempt([&] { (void)check::read_candidate(candidate_file, {}, check::MatchBy::kPosition); });
-  attempt([&] {
+  unless_refused([&] { (void)check::read_candidate(candidate_file, {}, check::MatchBy::kPosition); });
+  unless_refused([&] {
     const check::Truth truth = check::read_truth(truth_file);
     for (const check::TruthRow& row : truth.rows) {
       if (!std::isfinite(row.value) || !(row.lower <= row.upper)) fail("a truth that is none");
     }
-    attempt([&] { check_match(truth, candidate_file, check::MatchBy::kReceiver); });
-    attempt([&] { check_match(truth, candidate_file, check::MatchBy::kPosition); });
+    unless_refused([&] { check_match(truth, candidate_file, check::MatchBy::kReceiver); });
+    unless_refused([&] { check_match(truth, candidate_file, check::MatchBy::kPosition); });
   });
 }
 
