@@ -65,23 +65,6 @@ class CheckCommand : public ::testing::Test {
   std::string truth_;
 };
 
-// Truth files of older versions hold the bytes of the scene's file; other programs may still write them.
-TEST_F(CheckCommand, NamesMatchInLatin1AndInUtf8) {
-  for (const std::string in_truth : {"T\xFCr", "T\u00FCr"}) {
-    truth_ =
-        directory_
-            .write("names.csv", "# exactff truth of r\xE4um.obj\nreceiver,x,y,z,nx,ny,nz,source,exact,largest_rho_b\n" +
-                                    in_truth + ":1,0,0,0,0,0,1," + in_truth + ",0.5,10\n")
-            .string();
-    for (const std::string mine : {"T\xFCr", "T\u00FCr"}) {
-      const std::string file =
-          directory_.write("mine.csv", "receiver,source,value\n" + mine + ":1," + mine + ",0.5\n").string();
-      EXPECT_EQ(check(file, {"--max-abs", "0", "--junit", path("a.xml"), "--json", path("a.json")}).exit_code, 0);
-      EXPECT_HOLDS(contents(path("a.json")), "T\u00FCr");
-    }
-  }
-}
-
 TEST_F(CheckCommand, CatchesAnErrorOfAThousandthAndForgivesABillionth) {
   const ProgramRun caught = check(candidate("0.251"), {"--max-abs", "1e-6"});
   EXPECT_EQ(caught.exit_code, 1);
@@ -120,25 +103,6 @@ TEST_F(CheckCommand, JudgesByEveryLimit) {
   for (const auto& flags : broken) EXPECT_EQ(check(mine, flags).exit_code, 1) << flags[0] << ' ' << flags[1];
 }
 
-TEST_F(CheckCommand, TellsErrorsWithoutALimit) {
-  const ProgramRun run = check(candidate("0.375"), {});
-  EXPECT_EQ(run.exit_code, 0);
-  EXPECT_HOLDS(run.output, "error source rows median 90 % 99 % 99.9 % max RMS bias\n");
-  EXPECT_HOLDS(run.output, "absolute all 6 0 0.125 0.125 0.125 0.125 0.051 0.0208\n");
-  EXPECT_HOLDS(run.output, "radiosity t 3 0 1.25 1.25 1.25 1.25 0.722\n");
-  EXPECT_HOLDS(run.output, "0 5 ##################################################\n");
-  EXPECT_HOLDS(run.output, "up to 1 1 ##########\n");
-  EXPECT_HOLDS(run.output,
-               "verdict  criterion  source  measured  limit\npass     finite     all            0      0\n");
-}
-
-TEST_F(CheckCommand, FailsValuesThatAreNoNumbersWhateverTheLimits) {
-  const ProgramRun run = check(candidate("nan"), {});
-  EXPECT_EQ(run.exit_code, 1);
-  EXPECT_HOLDS(run.output, "1 b t 0.25 nan");
-  EXPECT_HOLDS(run.output, "FAIL finite all 1 0\n");
-}
-
 TEST_F(CheckCommand, MatchesByPosition) {
   const std::string mine =
       directory_
@@ -153,15 +117,6 @@ TEST_F(CheckCommand, MatchesByPosition) {
   EXPECT_EQ(check(mine, flags).exit_code, 0);
 }
 
-TEST_F(CheckCommand, JudgesSomeRowsOnRequest) {
-  const std::string mine = directory_.write("some.csv", "receiver,source,value\nb,t,0.25\n").string();
-  EXPECT_EQ(check(mine, {"--max-abs", "0"}).exit_code, 2);
-  const ProgramRun run = check(mine, {"--max-abs", "0", "--partial"});
-  EXPECT_EQ(run.exit_code, 0);
-  EXPECT_HOLDS(run.output, "(exact, 6 rows)");
-  EXPECT_HOLDS(run.output, "(1 row judged)");
-}
-
 TEST_F(CheckCommand, WritesWhatMachinesRead) {
   const ProgramRun run = check(candidate("0.375"), {"--max-abs", "0.1", "--junit", path("j.xml"), "--json",
                                                     path("j.json"), "--github", "--worst", "1"});
@@ -170,19 +125,6 @@ TEST_F(CheckCommand, WritesWhatMachinesRead) {
   EXPECT_EQ(nlohmann::json::parse(contents(path("j.json")))["overall"]["absolute"]["max"], 0.125);
   EXPECT_HOLDS(run.output,
                "::error file=" + path("mine.csv") + ",line=5,title=exactff check%3A max-abs::max-abs: 0.125 is");
-}
-
-TEST_F(CheckCommand, AnnotatesBadInput) {
-  const ProgramRun run = check(candidate("x"), {"--github"});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_HOLDS(run.output, "::error file=" + path("mine.csv") + ",line=5,title=exactff check%3A bad input::");
-}
-
-TEST_F(CheckCommand, DrawsTheHistogram) {
-  if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "gnuplot is not installed";
-  EXPECT_EQ(check(candidate("0.375"), {"--plot", path("h.svg"), "--max-abs", "1"}).exit_code, 0);
-  EXPECT_HOLDS(contents(path("h.svg")), "</svg>");
-  EXPECT_HOLDS(contents(path("h.svg")), "max-abs");
 }
 
 TEST_F(CheckCommand, HoldsOnToABaseline) {
@@ -197,20 +139,6 @@ TEST_F(CheckCommand, HoldsOnToABaseline) {
   EXPECT_EQ(better.exit_code, 0);
   EXPECT_HOLDS(better.output, "Better than baseline max-abs: 0.125 -> 0.0625, 50 % less\n");
   EXPECT_HOLDS(better.output, "To record this improvement, without --baseline: --write-baseline " + file + '\n');
-}
-
-TEST_F(CheckCommand, TightensABaselineAndNeverLoosensIt) {
-  const std::string file = path("b.json"), next = path("next.json");
-  (void)check(candidate("0.375"), {"--write-baseline", file});
-  EXPECT_EQ(check(candidate("0.5"), {"--baseline", file, "--write-baseline", next}).exit_code, 1);
-  EXPECT_FALSE(std::filesystem::exists(next));
-  EXPECT_EQ(check(candidate("0.3125"), {"--baseline", file, "--write-baseline", next}).exit_code, 0);
-  EXPECT_EQ(check(candidate("0.375"), {"--baseline", next}).exit_code, 1);
-}
-
-TEST_F(CheckCommand, RecordsNothingThatIsNoNumber) {
-  EXPECT_EQ(check(candidate("nan"), {"--write-baseline", path("b.json")}).exit_code, 1);
-  EXPECT_FALSE(std::filesystem::exists(path("b.json")));
 }
 
 TEST_F(CheckCommand, RefusesFlagsThatMeanNothing) {
@@ -248,34 +176,6 @@ TEST(CheckOfATruthFile, CatchesAThousandthAndForgivesABillionth) {
     EXPECT_EQ(run.exit_code, bug == 1e-3 ? 1 : 0) << run.output;
     EXPECT_HOLDS(run.output, "1 r3c2 light ");
   }
-}
-
-TEST_F(CheckCommand, TakesASpreadsheetsSemicolons) {
-  const std::string file =
-      directory_.write("mine.csv", "receiver;source;value\na;s;0,5\na;t;0,25\nb;s;0,125\nb;t;0,26\nc;s;0\nc;t;0,25\n")
-          .string();
-  const ProgramRun run = check(file, {"--max-abs", "0.011"});
-  EXPECT_EQ(run.exit_code, 0);
-  EXPECT_HOLDS(run.output, "1 b t 0.25 0.26 0.01 0.04 5");
-}
-
-TEST_F(CheckCommand, TakesImagesOfNumPyAndNoTableBesideThem) {
-  const std::string mine = path("mine.npy");
-  const std::vector<std::size_t> shape{1, 2, 3};
-  files::write_npy<double>(mine, shape, std::vector<double>{1, 1, 1, 2, 2, 2});
-  files::write_npy<double>(path("truth.npy"), shape, std::vector<double>{1, 1, 1, 2, 2, 2.5});
-  const ProgramRun run = run_program(
-      EXACTFF_PROGRAM, {"check", path("truth.npy"), mine, "--max-abs", "0.4", "--error-image", path("e.png")});
-  EXPECT_EQ(run.exit_code, 1);
-  EXPECT_HOLDS(run.output, "1 x1y0 B 2.5 2 -0.5 0.2");
-  EXPECT_TRUE(contents(path("e.png")).starts_with("\x89PNG"));
-  EXPECT_EQ(check(mine, {}).exit_code, 2);
-}
-
-TEST_F(CheckCommand, ShowsAnExample) {
-  const ProgramRun run = run_program(EXACTFF_PROGRAM, {"check", "--help"});
-  EXPECT_EQ(run.exit_code, 0);
-  EXPECT_HOLDS(run.output, "exactff check truth.csv mine.csv --max-abs 1e-4");
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -95,18 +94,6 @@ TEST_F(Batch, HooksOfTheCallingThreadCancelToo) {
 TEST_F(Batch, WhatAReceiverThrowsIsThrown) {
   receivers_[77].normal = {};
   for (const int threads : {1, 3}) EXPECT_THROW((void)values({threads, {}}), InputError) << threads;
-}
-
-TEST_F(Batch, WhatAHookThrowsIsThrownWhenTheThreadsHaveEnded) {
-  for (const int threads : {1, 3}) {
-    const Hooks hooks{[](const Progress&) { throw std::out_of_range("told"); }, {}};
-    EXPECT_THROW((void)values({threads, hooks}), std::out_of_range) << threads;
-  }
-}
-
-TEST_F(Batch, NoReceiversAreNoWork) {
-  receivers_.clear();
-  EXPECT_TRUE(values({}).empty());
 }
 
 }  // namespace

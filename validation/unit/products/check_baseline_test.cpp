@@ -72,23 +72,6 @@ TEST(Baseline, AllowsForSlackAndForRoundings) {
   EXPECT_FALSE(exact.held(judged({0.5, 0.25}, {0.5 + 1e-14, 0.25})).passed());
 }
 
-TEST(Baseline, OfEverySourceIsKeptByEverySource) {
-  const Truth truth = truth_of_two({0.5}, {0.5});
-  const Ratchet ratchet(judge(truth, std::vector{0.75, 0.5}, {}));
-  const std::vector<double> swapped{0.5, 0.75};
-  EXPECT_TRUE(ratchet.held(judge(truth, swapped, {})).passed());
-  const Held held = ratchet.held(judge(truth, swapped, {.per_source = true}));
-  EXPECT_FALSE(verdict_on(held, "baseline max-abs", "t").passed);
-  EXPECT_TRUE(verdict_on(held, "baseline max-abs", "s").passed);
-  EXPECT_EQ(held.improvements.front().source, "s");
-}
-
-TEST(Baseline, WithInfiniteErrorsImprovesToFiniteOnes) {
-  const Ratchet ratchet(judged({0.0}, {0.125}));
-  EXPECT_TRUE(ratchet.held(judged({0.0}, {0.125})).passed());
-  EXPECT_EQ(ratchet.held(judged({0.0}, {0.0})).improvements[1].recorded, kInfinity);
-}
-
 TEST(Baseline, IsOfTheseRowsInAnyOrderAndNoOthers) {
   const Ratchet ratchet(judged({0.5, 0.25}, {0.5, 0.25}));
   Truth turned = truth_with({0.5, 0.25});

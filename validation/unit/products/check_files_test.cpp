@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,15 +42,6 @@ TEST(TruthFile, TellsRowsSourcesAndFaces) {
   EXPECT_EQ(truth.rows[2].status, Status::kUnderflow);
 }
 
-TEST(TruthFile, MayHoldReceiversAndValuesOnly) {
-  const Truth truth = truth_of("id,exact\n7,0.5\n");
-  EXPECT_FALSE(truth.has_points);
-  EXPECT_FALSE(truth.has_normals);
-  EXPECT_EQ(truth.sources, std::vector<std::string>{""});
-  EXPECT_EQ(truth.rows.front().lower, 0.5);
-  EXPECT_FALSE(truth.rows.front().largest_rho_b.has_value());
-}
-
 TEST(TruthFile, LendsAnotherColumnWithoutTheBoundsOfTheFormFactor) {
   const std::string text =
       "receiver,source,exact,lower,upper,unoccluded,radiosity_r,radiosity_g,radiosity_b\na,s,.25,.2,.3,.5,1,2,.5\n";
@@ -62,16 +52,6 @@ TEST(TruthFile, LendsAnotherColumnWithoutTheBoundsOfTheFormFactor) {
   const Truth radiosity = truth_of(text, "radiosity_g");
   EXPECT_EQ(radiosity.rows.front().value, 2.0);
   EXPECT_EQ(radiosity.rows.front().largest_rho_b, 1.0);
-}
-
-TEST(TruthFile, FindsRhoBOfZerosFromTheirFaceElseFromTheirSource) {
-  const Truth truth = truth_of(
-      "receiver,on,source,exact,radiosity_r,radiosity_g,radiosity_b\n"
-      "a,floor,s,0.5,1,2,0\nb,floor,s,0,0,0,0\nc,wall,s,0.25,2,2,2\nd,wall,s,0,0,0,0\ne,roof,s,0,0,0,0\n"
-      "f,floor,t,0,0,0,0\n");
-  std::vector<std::optional<double>> found;
-  for (const TruthRow& row : truth.rows) found.push_back(row.largest_rho_b);
-  EXPECT_EQ(found, (std::vector<std::optional<double>>{4.0, 4.0, 8.0, 8.0, 8.0, std::nullopt}));
 }
 
 TEST(TruthFile, IsRefusedWithEveryProblemAndItsLine) {

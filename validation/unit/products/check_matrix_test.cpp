@@ -1,9 +1,6 @@
 // A matrix of another program, judged by one of ours.
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <cmath>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -114,25 +111,6 @@ TEST_F(CheckMatrix, AnErrorIsTheDistanceFromTheBounds) {
   EXPECT_NEAR(low.worst[0].error, -0.0005, 1e-15);
 }
 
-TEST_F(CheckMatrix, ClaimsOfOlderFilesAreEstimates) {
-  truth_ = write("old.csv",
-                 "from,to,factor,lower,upper,claim,accurate,area_from,area_to,cells,event_cells\n"
-                 "a,a,0,0,0,zero,yes,1,1,0,0\na,b,0.5,0.4995,0.5005,topology-proved,yes,1,2,9,0\n"
-                 "b,a,0.25,0.2,0.3,statistical,no,2,1,9,0\nb,b,0,0,0,zero,yes,2,2,0,0\n");
-  const matrix::Table table = matrix::read_csv(truth_);
-  EXPECT_TRUE(table.has_old_claims);
-  EXPECT_EQ(table.entries[1].claim, Claim::kEstimated);
-  EXPECT_EQ(table.entries[1].way, Way::kCells);
-  EXPECT_EQ(table.entries[2].claim, Claim::kEstimated);
-  EXPECT_EQ(table.entries[2].way, Way::kPoints);
-  const OfMatrix found = report(write("m.csv", "0,0.5\n0.25,0\n"));
-  EXPECT_TRUE(found.passed());
-  EXPECT_NE(sentences(found.matrix).front().find("'topology-proved' and 'statistical' count as estimated"),
-            std::string::npos);
-  SetUp();
-  EXPECT_FALSE(matrix::read_csv(truth_).has_old_claims);
-}
-
 // As `exactff matrix --draft` wrote it until 2026-11-26.
 TEST_F(CheckMatrix, WholeViewsOfOldDraftsArePoints) {
   truth_ = write("draft.csv",
@@ -182,14 +160,6 @@ TEST_F(CheckMatrix, WhatNoMatrixMayBeIsTold) {
   EXPECT_EQ(sound.negative + sound.above_one, 0U);
   EXPECT_EQ(sound.row_sum->by, 0.0);
   EXPECT_NEAR(sound.reciprocity->by, 0.0, 1e-15);
-}
-
-// Ours against itself: with the columns of backs, no error at all.
-TEST_F(CheckMatrix, AMatrixAgreesWithItself) {
-  const OfMatrix found = report(truth_, {.max_abs = 0.0, .max_rel = 0.0});
-  EXPECT_TRUE(found.passed());
-  EXPECT_EQ(found.overall.rows, 12U);
-  EXPECT_EQ(found.matrix.row_sum->by, 0.0);
 }
 
 TEST_F(CheckMatrix, WhatCannotBeComparedIsRefusedWithItsPlace) {
@@ -290,19 +260,6 @@ TEST_F(CheckMatrix, TheCommandJudgesWritesAndHoldsABaseline) {
            {"--match", "position"}, {"--truth-column", "lower"}, {"--eps-b", "1"}, {"--error-image", path("e.png")}}) {
     EXPECT_EQ(check(flags).exit_code, 2) << flags.front();
   }
-}
-
-// What matrix writes for View3D is what check reads.
-TEST_F(CheckMatrix, OurOwnFilesAgree) {
-  const std::string scene = EXACTFF_DATA_DIR "/scenes/formats/test4.vs3";
-  EXPECT_EQ(validation::run_program(EXACTFF_PROGRAM, {"matrix", scene, "-o", path("m.csv"), "--view3d", path("m.out")})
-                .exit_code,
-            0);
-  EXPECT_EQ(
-      validation::run_program(EXACTFF_PROGRAM, {"check", path("m.csv"), path("m.out"), "--max-abs", "5e-7"}).exit_code,
-      0);
-  EXPECT_EQ(
-      validation::run_program(EXACTFF_PROGRAM, {"check", path("m.csv"), path("m.csv"), "--max-abs", "0"}).exit_code, 0);
 }
 
 }  // namespace

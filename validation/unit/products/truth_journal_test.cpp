@@ -21,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace jobs;
-using validation::complaint;
 using validation::text_of;
 using validation::write_text;
 
@@ -51,11 +50,6 @@ TEST_F(Truth, AnInterruptedRunGoesOn) {
   EXPECT_GT(summary.resumed, 110U);
   EXPECT_LT(summary.resumed, 200U);
   expect_only({"truth.csv"});
-}
-
-TEST_F(Truth, ARunThatFinishedNoRowLeavesNothing) {
-  interrupt(request(2), 0);
-  expect_only({});
 }
 
 // Blocks of few rows, not in order, so that a few bytes can be damaged in many ways.
@@ -162,19 +156,6 @@ TEST_F(Truth, ACompleteFileIsLeftAsItIs) {
       << refusal(request(3), Existing::kResume);
 }
 
-TEST_F(Truth, AFileWithTheOldNamesOfCellsIsRefusedByName) {
-  Request old = request(3);
-  for (Receiver& receiver : old.receivers) {
-    receiver.id = std::to_string(receiver.cell->column) + ',' + std::to_string(receiver.cell->row);
-  }
-  (void)write(old, file_);
-  EXPECT_NE(refusal(request(3), Existing::kResume)
-                .find("the file may be of an older version, which named the cell r7c12 of a grid '12,7'; such a file "
-                      "cannot be continued or merged"),
-            std::string::npos)
-      << refusal(request(3), Existing::kResume);
-}
-
 TEST_F(Truth, AForeignFileIsNoJournal) {
   for (const char* text : {"dear diary\n", "# exactff 0.0.1 truth\nreceiver\n", "\n", "#"}) {
     write_text(journal_, text);
@@ -228,21 +209,6 @@ TEST_F(Truth, TwoProcessesCannotShareAJournal) {
     EXPECT_NE(refusal(request(2), existing).find("truth.csv.part: another process is working on it"),
               std::string::npos);
   }
-}
-
-TEST_F(Truth, WhatCannotBeAFileIsRefused) {
-  for (const fs::path& path : {directory_.path(), directory_.path() / "missing" / "a.csv", fs::path("/dev/null"),
-                               directory_.path() / "folder/", fs::path()}) {
-    EXPECT_NE(complaint([&] { write(request(1), path); }), "") << path;
-  }
-  expect_only({});
-}
-
-TEST_F(Truth, TheFileGoesWhereALinkLeads) {
-  fs::create_symlink("target.csv", file_);
-  write(request(1), file_, Existing::kRefuse);
-  EXPECT_TRUE(fs::is_symlink(file_));
-  EXPECT_GT(fs::file_size(directory_.path() / "target.csv"), 100U);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <sstream>
 #include <string>
 
 #include "generate/random.h"
@@ -59,12 +58,6 @@ TEST_F(TruthPipe, WhatAPipeCannotHaveIsRefused) {
   EXPECT_TRUE(said("--force is given with -o - ")) << error_;
 }
 
-TEST_F(TruthPipe, AFullDiskIsToldWithWords) {
-  (void)shell(truth_ + "--on floor --grid 20x20 -o - > /dev/full");
-  EXPECT_EQ(code_, 2);
-  EXPECT_TRUE(said("exactff: the rows could not be written (the output is incomplete)")) << error_;
-}
-
 TEST_F(TruthPipe, SceneAndReceiversComeFromStandardInput) {
   (void)directory_.write("points.csv", "x,y,z,nx,ny,nz,on\n278,0,279,0,1,0,floor\n100,0,100,0,1,0,floor\n");
   const std::string by_file = shell(truth_ + "--receivers points.csv -o -");
@@ -99,44 +92,6 @@ TEST_F(TruthPipe, ATruthFileMayNameTheReceivers) {
   EXPECT_NE(piped.find("\n# rows: 25\n"), std::string::npos) << piped;
 }
 
-TEST_F(TruthPipe, UnitNormalsAreFurtherColumns) {
-  const std::string flags = "--on left,floor --grid 2x2 --source light -o - ";
-  const std::string plain = shell(truth_ + flags), with = shell(truth_ + flags + "--unit-normals");
-  EXPECT_EQ(plain.find("ux"), std::string::npos);
-  EXPECT_NE(with.find("# unit normals: ux,uy,uz is nx,ny,nz scaled to length 1, correctly rounded"), std::string::npos);
-  std::istringstream lines(with), plain_lines(plain);
-  std::string rest;  // the file without what the flag adds
-  bool rows = false;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("# unit normals")) continue;
-    if (line.starts_with("receiver,")) {
-      EXPECT_TRUE(line.starts_with("receiver,on,x,y,z,nx,ny,nz,ux,uy,uz,source,exact,")) << line;
-      rows = true;
-    }
-    if (rows) {
-      std::vector<std::string> fields(1);  // ids may hold a comma in quotes
-      bool quoted = false;
-      for (const char c : line) {
-        if (c == '"') quoted = !quoted;
-        if (c == ',' && !quoted) {
-          fields.emplace_back();
-        } else {
-          fields.back() += c;
-        }
-      }
-      if (!line.starts_with("receiver,")) {
-        const double length = std::hypot(std::stod(fields[8]), std::stod(fields[9]), std::stod(fields[10]));
-        EXPECT_NEAR(length, 1.0, 1e-15) << line;
-      }
-      fields.erase(fields.begin() + 8, fields.begin() + 11);
-      line.clear();
-      for (const std::string& field : fields) line += (line.empty() ? "" : ",") + field;
-    }
-    rest += line + '\n';
-  }
-  EXPECT_EQ(rest, plain);
-}
-
 // --- the unit normal -----------------------------------------------------------------------------------------
 
 TEST(UnitNormal, IsCorrectlyRounded) {
@@ -161,14 +116,6 @@ TEST(UnitNormal, IsTheNearestOfEveryNormal) {
       ASSERT_LE(std::abs(static_cast<double>(exact - static_cast<long double>(found))), 0.501 * ulp) << i;
     }
   }
-}
-
-TEST(UnitNormal, IsKeptFromRowToRow) {
-  truth::UnitNormal unit;
-  EXPECT_EQ(unit.of({0, 0, 1}), (Vec3{0, 0, 1}));
-  EXPECT_EQ(unit.of({0, 2, 0}), (Vec3{0, 1, 0}));
-  EXPECT_EQ(unit.of({0, 2, 0}), (Vec3{0, 1, 0}));
-  EXPECT_EQ(unit.of({5, 0, 0}), (Vec3{1, 0, 0}));
 }
 
 }  // namespace

@@ -143,25 +143,6 @@ TEST(Experiments, GiveUpWhenCancelled) {
 
 // --- Karkanis' two plots -------------------------------------------------------------------------------
 
-TEST(HemicubeScatter, CountsTheTrianglesThatTheHemicubeMisses) {
-  const ScatterSize size{.scenes = 2, .triangles = 100, .resolutions = {20, 100}};
-  const std::vector<ScatterPoint> points = scatter_points(size, 1, kNoHooks);
-  ASSERT_EQ(points.size(), 200U);
-  for (std::size_t r = 0; r < 2; ++r) {
-    std::size_t visible = 0, missed = 0;
-    for (const ScatterPoint& p : points) {
-      visible += p.exact > 0.0 ? 1U : 0U;
-      missed += p.exact > 0.0 && p.hemicube[r] == 0.0 ? 1U : 0U;
-    }
-    for (const ScatterDecade& d : scatter_decades(points, r)) {
-      visible -= d.visible;
-      missed -= d.missed;
-    }
-    EXPECT_EQ(visible, 0U);
-    EXPECT_EQ(missed, 0U);
-  }
-}
-
 TEST(HemicubeScatter, AFinerHemicubeMissesFewerAndErrsLess) {
   const ScatterSize size{.scenes = 2, .triangles = 100, .resolutions = {20, 200}};
   const std::vector<ScatterPoint> points = scatter_points(size, 1, kNoHooks);
@@ -172,21 +153,6 @@ TEST(HemicubeScatter, AFinerHemicubeMissesFewerAndErrsLess) {
   EXPECT_LT(missed(1), missed(0) / 2);
   const std::vector<ScatterDecade> coarse = scatter_decades(points, 0), fine = scatter_decades(points, 1);
   EXPECT_LT(fine.back().median, 0.2 * coarse.back().median);
-}
-
-TEST(HemicubeScatter, TheErrorFallsAsTheFormFactorGrows) {
-  const ScatterSize size{.scenes = 3, .triangles = 150, .resolutions = {100}};
-  const std::vector<double> slopes = scatter_slopes(scatter_points(size, 1, kNoHooks), size, 0);
-  ASSERT_EQ(slopes.size(), 3U);
-  const double slope = mean_slope(slopes).slope;
-  EXPECT_LT(slope, -0.4);
-  EXPECT_GT(slope, -1.1);
-}
-
-TEST(HemicubeScatter, DrawsWhatIsMissedApart) {
-  const Result result = hemicube_scatter(ScatterSize{.scenes = 1, .triangles = 100, .resolutions = {20}}, 1, kNoHooks);
-  ASSERT_EQ(result.figures.size(), 2U);
-  for (const page::Figure& figure : result.figures) EXPECT_NE(figure.script.find("missed"), std::string::npos);
 }
 
 // --- resolution, rotation, distance --------------------------------------------------------------------
@@ -207,11 +173,6 @@ TEST(HemicubeResolution, SlopesAreThoseOfCountingPixels) {
 
 // --- times ---------------------------------------------------------------------------------------------
 
-TEST(KarkanisTimes, LocalExponentsOfHisTimesAreThosePublished) {
-  EXPECT_NEAR(local_exponent(50, 0.2, 100, 2.8), 3.807, 1e-3);
-  EXPECT_NEAR(local_exponent(200, 300.0, 500, 28800.0), 4.981, 1e-3);
-}
-
 TEST(KarkanisTimes, TheShaftSavesPairsAndChangesNoBit) {
   const WorkRow row = work_row(40, true);
   EXPECT_EQ(row.differences, std::size_t{0});
@@ -220,19 +181,6 @@ TEST(KarkanisTimes, TheShaftSavesPairsAndChangesNoBit) {
   EXPECT_GT(row.visible, 30U);
   EXPECT_GT(row.sum, 0.0);
   EXPECT_FALSE(work_row(10, false).differences);
-}
-
-TEST(KarkanisTimes, NamesWhatTheBudgetLeavesOut) {
-  TimesSize size{.triangles = {10, 20, 40}};
-  size.budget = 0.0;
-  size.rays = 4;
-  size.affordable = {1};
-  size.affordable_at = 20;
-  const Result result = karkanis_times(size, kNoHooks);
-  ASSERT_EQ(result.left_out.size(), 1U);
-  EXPECT_NE(result.left_out[0].what.find("20 and 40"), std::string::npos) << result.left_out[0].what;
-  ASSERT_EQ(result.values.size(), 1U);
-  EXPECT_EQ(result.values[0].csv, karkanis_times(size, kNoHooks).values[0].csv);
 }
 
 // --- Nettle --------------------------------------------------------------------------------------------
@@ -252,13 +200,6 @@ TEST(NettleRule, SlopesAreTwoWithoutOcclusionOneWithTheExactFractionAndNoneWithR
   EXPECT_NEAR(curve(curves, NettleCase::kFree, 1).slope().slope, 2.0, 0.02);
   EXPECT_NEAR(curve(curves, NettleCase::kExactV, 1).slope().slope, 1.0, 0.1);
   EXPECT_LT(curve(curves, NettleCase::kRayV, 1).slope().slope, 0.5);
-}
-
-TEST(NettleRule, GroupsAreIndependent) {
-  const NettleCurve free = nettle_curves(small_nettle(), 1, kNoHooks).front();
-  ASSERT_EQ(free.rms_by_group.size(), 4U);
-  EXPECT_NE(free.rms_by_group[0].front(), free.rms_by_group[1].front());
-  EXPECT_NE(free.rms_by_group[0].front(), free.rms_by_group[3].front());
 }
 
 TEST(NettleRule, SplittingDividesTheErrorByTheNumberOfParts) {
@@ -405,17 +346,6 @@ TEST(Closure, ExactBallsHoldOneAndTheHemicubeClosesThoughItsValuesErr) {
 }
 
 // --- the plot they need --------------------------------------------------------------------------------
-
-TEST(ScatterPlot, RoundsItsPointsAndDrawsEachPlaceOnce) {
-  const page::Axes axes{.x = "x", .y = "y"};
-  const std::string script = page::scatter_plot(
-      axes,
-      {{"cloud", {{0.123456, 1.0}, {0.123461, 1.0}, {2.0, 0.0}, {3.0, 5.0}}, 1}, {"diagonal", {{1, 1}, {2, 2}}, 0}});
-  EXPECT_NE(script.find("0.1235 1\n3 5\nEND"), std::string::npos) << script;
-  EXPECT_NE(script.find("'diagonal'"), std::string::npos);
-  EXPECT_EQ(script.find("0.12346"), std::string::npos);
-  EXPECT_EQ(page::scatter_plot(axes, {{"nothing", {{-1.0, 1.0}}, 1}}), "");
-}
 
 }  // namespace
 }  // namespace exactff::experiments

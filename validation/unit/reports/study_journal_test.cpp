@@ -1,17 +1,12 @@
 // Finished work in a file: added records are read back, and torn, damaged or foreign files do no harm.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <set>
 #include <string>
 
 #include "exactff/study.h"
-#include "files/fields.h"
-#include "jobs/kept_work.h"
-#include "report/report.h"
 #include "support/program.h"
 #include "unit/reports/study_support.h"
 
@@ -21,8 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using jobs::Existing;
 using jobs::Journal;
-using jobs::journal_of_folder;
-using jobs::KeptWork;
 using validation::expect_same_values;
 using validation::request_with_methods;
 using validation::small_request;
@@ -76,14 +69,6 @@ TEST_F(StudyJournal, KeepsWhatIsAdded) {
   EXPECT_EQ(sound_pieces(Journal(file_, Existing::kResume)), 3U);
 }
 
-TEST_F(StudyJournal, ThatIsAddedToAgainHasTheLastBytes) {
-  Journal journal(file_, Existing::kRefuse);
-  journal.add("a", "old");
-  journal.add("a", "newer");
-  EXPECT_EQ(journal.find("a"), "newer");
-  EXPECT_EQ(journal.size(), 1U);
-}
-
 TEST_F(StudyJournal, OfAnInterruptedRunIsRefusedResumedOrReplaced) {
   const std::string bytes = written();
   const std::string said = refusal(Existing::kRefuse);
@@ -131,12 +116,6 @@ TEST_F(StudyJournal, DamagedInAnyByteHasNothingThatIsWrong) {
   }
 }
 
-TEST_F(StudyJournal, WithNothingSoundInItIsNoReasonToRefuse) {
-  const std::string whole = written();
-  put(whole.substr(0, whole.find('\n') + 4));
-  EXPECT_EQ(refusal(Existing::kRefuse), "");
-}
-
 TEST_F(StudyJournal, OfAnotherVersionIsOnlyReplaced) {
   const std::string theirs = "exactff journal 1, version 0.0.0\na 1 00000000\nx\n";
   for (const Existing existing : {Existing::kRefuse, Existing::kResume}) {
@@ -147,14 +126,6 @@ TEST_F(StudyJournal, OfAnotherVersionIsOnlyReplaced) {
   EXPECT_EQ(refusal(Existing::kReplace), "");
 }
 
-TEST_F(StudyJournal, IsNotMadeOfAFileThatIsNone) {
-  for (const Existing existing : {Existing::kRefuse, Existing::kResume, Existing::kReplace}) {
-    put("Dear reader,\n");
-    EXPECT_NE(refusal(existing).find("exactff did not write it"), std::string::npos);
-    EXPECT_EQ(validation::text_of(file_), "Dear reader,\n");
-  }
-}
-
 TEST_F(StudyJournal, InUseIsRefusedToOthers) {
   Journal journal(file_, Existing::kRefuse);
   journal.add("a", "1");
@@ -163,174 +134,6 @@ TEST_F(StudyJournal, InUseIsRefusedToOthers) {
   }
   journal.add("b", "2");
   EXPECT_EQ(journal.find("a"), "1") << "the others spoilt nothing";
-}
-
-TEST_F(StudyJournal, IsRemovedWhenEmptyOrDone) {
-  { const Journal journal(file_, Existing::kRefuse); }
-  EXPECT_FALSE(fs::exists(file_));
-  {
-    Journal journal(file_, Existing::kRefuse);
-    journal.add("a", "1");
-    journal.remove();
-  }
-  EXPECT_FALSE(fs::exists(file_));
-}
-
-TEST_F(StudyJournal, MakesTheFoldersOnTheWayAndTakesEmptyOnesWithIt) {
-  const fs::path deep = directory_.path() / "x" / "y" / "out.part";
-  { const Journal journal(deep, Existing::kRefuse); }
-  EXPECT_FALSE(fs::exists(directory_.path() / "x"));
-  {
-    Journal journal(deep, Existing::kRefuse);
-    journal.add("a", "1");
-  }
-  EXPECT_TRUE(fs::exists(deep));
-  {
-    Journal journal(directory_.path() / "z" / "out.part", Existing::kRefuse);
-    std::ofstream(directory_.path() / "z" / "result") << "x";
-  }
-  EXPECT_TRUE(fs::exists(directory_.path() / "z" / "result"));
-}
-
-TEST_F(StudyJournal, IsBesideTheFolderOfResults) {
-  EXPECT_EQ(journal_of_folder("out"), "out.part");
-  EXPECT_EQ(journal_of_folder("a/./out/"), "a/out.part");
-  EXPECT_EQ(journal_of_folder("/a/b/../out//"), "/a/out.part");
-}
-
-TEST_F(StudyJournal, GivesKeptWorkBackInsteadOfComputing) {
-  int computed = 0;
-  double result = 0.0;
-  const auto work = [&](Journal* journal, const std::string& prefix) {
-    result = 0.0;
-    KeptWork(journal, prefix)
-        .get(
-            "piece",
-            [&] {
-              ++computed;
-              result = 1.5;
-            },
-            [&](auto& words) { words(result); });
-    EXPECT_EQ(result, 1.5);
-  };
-  Journal journal(file_, Existing::kRefuse);
-  work(nullptr, "a");
-  work(&journal, "a");
-  EXPECT_EQ(computed, 2);
-  work(&journal, "a");
-  EXPECT_EQ(computed, 2);
-  work(&journal, "b");
-  EXPECT_EQ(computed, 3) << "another study's";
-  journal.add("a/piece", "of another shape");
-  work(&journal, "a");
-  EXPECT_EQ(computed, 4);
-}
-
-// --- words ---------------------------------------------------------------------------------------------------
-
-enum class Shape { kRound, kSquare, kFlat };
-
-struct Fields {
-  double number = 0.0;
-  std::uint64_t count = 0;
-  bool flag = false;
-  Shape shape = Shape::kRound;
-  std::vector<std::string> texts;
-  std::vector<double> numbers;
-  std::vector<double> none;
-  friend bool operator==(const Fields&, const Fields&) = default;
-};
-
-template <class Words>
-void fields(Words& words, Fields& f) {
-  words(f.number, f.count, f.flag);
-  words.choice(f.shape, 3);
-  words(f.texts, f.numbers, f.none);
-}
-
-std::string a_record() {
-  Fields all{0.1, std::uint64_t{1} << 63, true, Shape::kFlat, {"", "seven77", "eight888", "nine99999"}, {1, 2, 3}, {}};
-  files::WordWriter writer;
-  fields(writer, all);
-  return writer.bytes();
-}
-
-TEST(Words, ReadBackAsTheyWereWritten) {
-  const std::string bytes = a_record();
-  Fields read;
-  read.none = {7.0};
-  files::WordReader reader(bytes);
-  fields(reader, read);
-  EXPECT_TRUE(reader.complete());
-  EXPECT_EQ(
-      read,
-      (Fields{
-          0.1, std::uint64_t{1} << 63, true, Shape::kFlat, {"", "seven77", "eight888", "nine99999"}, {1, 2, 3}, {}}));
-}
-
-TEST(Words, KeepEveryBitOfADouble) {
-  double zero = -0.0, nan = std::numeric_limits<double>::quiet_NaN();
-  files::WordWriter writer;
-  writer(zero, nan);
-  zero = nan = 1.0;
-  files::WordReader reader(writer.bytes());
-  reader(zero);
-  EXPECT_FALSE(reader.complete()) << "a word is still there";
-  reader(nan);
-  EXPECT_TRUE(reader.complete());
-  EXPECT_TRUE(zero == 0.0 && std::signbit(zero));
-  EXPECT_TRUE(std::isnan(nan));
-}
-
-TEST(Words, CutAnywhereAreTornAndDoNoHarm) {
-  const std::string whole = a_record();
-  for (std::size_t cut = 0; cut <= whole.size(); ++cut) {
-    files::WordReader reader(std::string_view(whole).substr(0, cut));
-    Fields read;
-    fields(reader, read);
-    EXPECT_EQ(reader.complete(), cut == whole.size()) << cut;
-  }
-}
-
-TEST(Words, ThatPromiseMoreThanThereIsAreTorn) {
-  for (std::uint64_t count : {std::uint64_t{2}, ~std::uint64_t{0}, std::uint64_t{1} << 61}) {
-    files::WordWriter writer;
-    double one = 1.0;
-    writer(count, one);
-    std::vector<double> list;
-    files::WordReader numbers(writer.bytes());
-    numbers(list);
-    EXPECT_TRUE(list.empty());
-    EXPECT_TRUE(numbers.torn());
-    if (count == 2) continue;
-    std::string words = "before";
-    files::WordReader text(writer.bytes());
-    text(words);
-    EXPECT_EQ(words, "");
-    EXPECT_TRUE(text.torn());
-  }
-}
-
-TEST(Words, OfAListOfAnotherLengthAreTorn) {
-  for (const std::size_t length : {1U, 2U, 3U}) {
-    std::vector<double> list(length, 0.5);
-    files::WordWriter writer;
-    writer.list_of(length, list);
-    files::WordReader reader(writer.bytes());
-    reader.list_of(2, list);
-    EXPECT_EQ(reader.complete(), length == 2);
-  }
-}
-
-TEST(Words, ThatAreNoEnumeratorAreTorn) {
-  std::uint64_t three = 3;
-  files::WordWriter writer;
-  writer(three);
-  Shape shape = Shape::kFlat;
-  files::WordReader reader(writer.bytes());
-  reader.choice(shape, 3);
-  EXPECT_TRUE(reader.torn());
-  EXPECT_EQ(shape, Shape::kRound);
 }
 
 // --- chapters ------------------------------------------------------------------------------------------------
@@ -344,31 +147,6 @@ page::Chapter a_chapter() {
   chapter.times = {{"times.csv", "seconds", "s\n"}, {"t2.csv", "", ""}};
   chapter.left_out = {{"the moon", "too far"}};
   return chapter;
-}
-
-TEST(ChapterBytes, ReadBackAsTheyWereWritten) {
-  const page::Chapter chapter = a_chapter();
-  const auto back = page::chapter_of(page::to_bytes(chapter));
-  ASSERT_TRUE(back.has_value());
-  EXPECT_EQ(back->name, "name");
-  EXPECT_EQ(back->title, "A title");
-  EXPECT_EQ(back->paragraphs, chapter.paragraphs);
-  ASSERT_EQ(back->tables.size(), 1U);
-  EXPECT_EQ(back->tables[0].title, "Numbers");
-  EXPECT_EQ(back->tables[0].columns, chapter.tables[0].columns);
-  EXPECT_EQ(back->tables[0].rows, chapter.tables[0].rows);
-  ASSERT_EQ(back->figures.size(), 2U);
-  EXPECT_EQ(back->figures[0].script, "plot 1\n");
-  EXPECT_EQ(back->figures[1].id, "f2");
-  EXPECT_EQ(back->figures[1].caption, "<b>");
-  EXPECT_TRUE(back->figures[1].map && !back->figures[0].map);
-  ASSERT_EQ(back->values.size(), 1U);
-  EXPECT_EQ(back->values[0].csv, "# exactff\nx\n1\n");
-  ASSERT_EQ(back->times.size(), 2U);
-  EXPECT_EQ(back->times[0].holds, "seconds");
-  ASSERT_EQ(back->left_out.size(), 1U);
-  EXPECT_EQ(back->left_out[0].why, "too far");
-  EXPECT_EQ(page::to_bytes(*back), page::to_bytes(chapter));
 }
 
 TEST(ChapterBytes, CutAnywhereOrTooLongAreNone) {
