@@ -178,5 +178,22 @@ TEST(CheckOfATruthFile, CatchesAThousandthAndForgivesABillionth) {
   }
 }
 
+// Truth files of older versions hold the bytes of the scene's file; other programs may still write them.
+TEST_F(CheckCommand, NamesMatchInLatin1AndInUtf8) {
+  for (const std::string in_truth : {"T\xFCr", "T\u00FCr"}) {
+    truth_ =
+        directory_
+            .write("names.csv", "# exactff truth of r\xE4um.obj\nreceiver,x,y,z,nx,ny,nz,source,exact,largest_rho_b\n" +
+                                    in_truth + ":1,0,0,0,0,0,1," + in_truth + ",0.5,10\n")
+            .string();
+    for (const std::string mine : {"T\xFCr", "T\u00FCr"}) {
+      const std::string file =
+          directory_.write("mine.csv", "receiver,source,value\n" + mine + ":1," + mine + ",0.5\n").string();
+      EXPECT_EQ(check(file, {"--max-abs", "0", "--junit", path("a.xml"), "--json", path("a.json")}).exit_code, 0);
+      EXPECT_HOLDS(contents(path("a.json")), "T\u00FCr");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace exactff

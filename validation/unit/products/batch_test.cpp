@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -94,6 +95,13 @@ TEST_F(Batch, HooksOfTheCallingThreadCancelToo) {
 TEST_F(Batch, WhatAReceiverThrowsIsThrown) {
   receivers_[77].normal = {};
   for (const int threads : {1, 3}) EXPECT_THROW((void)values({threads, {}}), InputError) << threads;
+}
+
+TEST_F(Batch, WhatAHookThrowsIsThrownWhenTheThreadsHaveEnded) {
+  for (const int threads : {1, 3}) {
+    const Hooks hooks{[](const Progress&) { throw std::out_of_range("told"); }, {}};
+    EXPECT_THROW((void)values({threads, hooks}), std::out_of_range) << threads;
+  }
 }
 
 }  // namespace

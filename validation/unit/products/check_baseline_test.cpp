@@ -103,5 +103,16 @@ TEST(Baseline, IsRefusedIfItIsNone) {
   EXPECT_HOLDS(complaint([&] { hold_against_baseline(report, file, -1.0); }), "the slack for the baseline is -1");
 }
 
+TEST(Baseline, OfEverySourceIsKeptByEverySource) {
+  const Truth truth = truth_of_two({0.5}, {0.5});
+  const Ratchet ratchet(judge(truth, std::vector{0.75, 0.5}, {}));
+  const std::vector<double> swapped{0.5, 0.75};
+  EXPECT_TRUE(ratchet.held(judge(truth, swapped, {})).passed());
+  const Held held = ratchet.held(judge(truth, swapped, {.per_source = true}));
+  EXPECT_FALSE(verdict_on(held, "baseline max-abs", "t").passed);
+  EXPECT_TRUE(verdict_on(held, "baseline max-abs", "s").passed);
+  EXPECT_EQ(held.improvements.front().source, "s");
+}
+
 }  // namespace
 }  // namespace exactff::check

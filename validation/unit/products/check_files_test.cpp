@@ -142,5 +142,15 @@ TEST(CandidateFile, IsRefusedWithEveryProblemAndItsLine) {
   EXPECT_HOLDS(complaint([] { (void)candidate_of("value\n1\n", {}, MatchBy::kPosition); }), "no column 'x' among");
 }
 
+TEST(TruthFile, FindsRhoBOfZerosFromTheirFaceElseFromTheirSource) {
+  const Truth truth = truth_of(
+      "receiver,on,source,exact,radiosity_r,radiosity_g,radiosity_b\n"
+      "a,floor,s,0.5,1,2,0\nb,floor,s,0,0,0,0\nc,wall,s,0.25,2,2,2\nd,wall,s,0,0,0,0\ne,roof,s,0,0,0,0\n"
+      "f,floor,t,0,0,0,0\n");
+  std::vector<std::optional<double>> found;
+  for (const TruthRow& row : truth.rows) found.push_back(row.largest_rho_b);
+  EXPECT_EQ(found, (std::vector<std::optional<double>>{4.0, 4.0, 8.0, 8.0, 8.0, std::nullopt}));
+}
+
 }  // namespace
 }  // namespace exactff::check

@@ -115,5 +115,10 @@ TEST(MatchByPosition, FindsWhatASearchOfAllFinds) {
   }
 }
 
+TEST(MatchByPosition, RefusesTwoValuesForOneRow) {
+  EXPECT_HOLDS(complaint([] { (void)matched_by_position("x,y,z,source,value\n1,0,0,s,1\n1.1,0,0,s,2\n", 0.2); }),
+               "receiver 'b' of source 's' already has a value (line 2)");
+}
+
 }  // namespace
 }  // namespace exactff::check

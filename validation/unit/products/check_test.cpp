@@ -192,5 +192,24 @@ TEST(ErrorHistogram, CountsEveryErrorOnce) {
   EXPECT_DOUBLE_EQ(h.bins[1].high, 1e-2);
 }
 
+TEST(CheckStatistics, DoNotLoseSmallErrorsToUnderflow) {
+  EXPECT_DOUBLE_EQ(judged({0.0, 0.0}, {3e-200, 4e-200}).overall.absolute.rms, std::sqrt(12.5) * 1e-200);
+}
+
+TEST(Criteria, NoteRowsThatAreNotCertified) {
+  Truth truth = truth_with({0.5});
+  truth.rows[0].status = Status::kNotCertified;
+  truth.rows[0].lower = 0.0;
+  truth.rows[0].upper = 1.0;
+  const Report report = judge(truth, std::vector{0.75}, {.max_abs = 0.0});
+  EXPECT_TRUE(report.passed());
+  EXPECT_EQ(report.not_certified, 1U);
+}
+
+TEST(Criteria, WithARelativeFloorForgiveSmallTruths) {
+  EXPECT_FALSE(judged({0.0, 1e-9}, {1e-6, 1e-6}, {.max_rel = 1e-3}).passed());
+  EXPECT_TRUE(judged({0.0, 1e-9}, {1e-6, 1e-6}, {.max_rel = 1e-3, .relative_floor = 1e-3}).passed());
+}
+
 }  // namespace
 }  // namespace exactff::check

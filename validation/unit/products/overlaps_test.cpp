@@ -197,5 +197,18 @@ TEST(Overlaps, NoSourceIsTurnedAwayFromItsRoom) {
   EXPECT_EQ(advice_to_flip(scene, std::span(&window, 1)), "");
 }
 
+TEST(Overlaps, BetweenSelectionsAloneAreFound) {
+  PlainScene plain;
+  add_tile(plain, "floor", 0, 0, 4, 4);
+  add_tile(plain, "carpet", 1, 1, 1, 1);
+  add_tile(plain, "carpet", 3, 3, 2, 1);
+  const Scene scene = generate::build(plain);
+  const std::vector<Selection> first{scene.select("floor"), scene.select("carpet:1")};
+  ASSERT_EQ(overlapping_fronts(scene, first).size(), 1U);
+  EXPECT_NEAR(overlapping_fronts(scene, first)[0].area, 1.0, 1e-12);
+  const std::vector<Selection> alone{scene.select("carpet:1"), scene.select("carpet:2")};
+  EXPECT_TRUE(overlapping_fronts(scene, alone).empty());
+}
+
 }  // namespace
 }  // namespace exactff::slips

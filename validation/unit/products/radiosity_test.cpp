@@ -488,5 +488,13 @@ TEST_F(RadiosityCommand, MakesBoundsOfAWidthOrSaysHowWideTheyAre) {
   EXPECT_EQ(command({"--width", "0"}).exit_code, 2);
 }
 
+// The plate above, alone and turned round, shines from its back.
+TEST_F(RadiosityCommand, BacksOfTwoSidedPatchesEmit) {
+  const std::string scene = write(plates());
+  const auto both = run(scene, {"--two-sided", "above", "--plain"});
+  EXPECT_EQ(both.exit_code, 0);
+  EXPECT_NE(both.output.find("above (back)\tred\t8\t8\t8\t"), std::string::npos) << both.output;
+}
+
 }  // namespace
 }  // namespace exactff::radiosity

@@ -21,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace jobs;
+using validation::complaint;
 using validation::text_of;
 using validation::write_text;
 
@@ -209,6 +210,21 @@ TEST_F(Truth, TwoProcessesCannotShareAJournal) {
     EXPECT_NE(refusal(request(2), existing).find("truth.csv.part: another process is working on it"),
               std::string::npos);
   }
+}
+
+TEST_F(Truth, WhatCannotBeAFileIsRefused) {
+  for (const fs::path& path : {directory_.path(), directory_.path() / "missing" / "a.csv", fs::path("/dev/null"),
+                               directory_.path() / "folder/", fs::path()}) {
+    EXPECT_NE(complaint([&] { write(request(1), path); }), "") << path;
+  }
+  expect_only({});
+}
+
+TEST_F(Truth, TheFileGoesWhereALinkLeads) {
+  fs::create_symlink("target.csv", file_);
+  write(request(1), file_, Existing::kRefuse);
+  EXPECT_TRUE(fs::is_symlink(file_));
+  EXPECT_GT(fs::file_size(directory_.path() / "target.csv"), 100U);
 }
 
 }  // namespace

@@ -98,5 +98,11 @@ TEST(SilentErrors, OfAStudyAreSummedUp) {
   EXPECT_TRUE(any);
 }
 
+TEST(SilentErrors, HolesOfTheVisibleRegionAreNotVisible) {
+  const std::vector<Loop> loops = {rectangle(0, 0, 1, 1), rectangle(0.25, 0.25, 0.75, 0.75, true)};
+  const std::vector<Vec3> window = {{0, 0, 1}, {1, 0, 1}, {1, 0.5, 1}, {0, 0.5, 1}};
+  EXPECT_NEAR(area_inside(loops, window, {0, 0, 1}), 0.5 - 0.125, 1e-15);
+}
+
 }  // namespace
 }  // namespace exactff::study

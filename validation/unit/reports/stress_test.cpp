@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <set>
 #include <sstream>
 
@@ -212,6 +213,12 @@ TEST(StressCommand, ListsItsFamilies) {
   for (const FamilyInfo& family : families()) {
     EXPECT_NE(run.output.find(family.name), std::string::npos) << family.name;
   }
+}
+
+TEST(StressJudgement, NoNumberIsNotUsable) {
+  FamilyResult result;
+  result.rows = {row_with_error(1, std::numeric_limits<double>::quiet_NaN())};
+  EXPECT_EQ(usable_up_to(result, Method::kAcos, 1e300), 0.0);
 }
 
 }  // namespace
