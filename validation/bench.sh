@@ -11,18 +11,17 @@ cd "$top"
 folder=build
 scenes=(sparse blinds mesh dense deep tiles lattice near)
 sizes=(100 1000 10000 100000)
-segments='4|8|16|32|64'
 repetitions=7
 seconds=0.1  # a repetition, at least
 quick=false
 case "${1:-}" in
-  --quick) quick=true sizes=(100 1000 10000) segments='4|8|16' repetitions=3 seconds=0.05 ;;
+  --quick) quick=true sizes=(100 1000 10000) repetitions=3 seconds=0.05 ;;
   '') ;;
   *) echo "usage: bench.sh [--quick]" >&2; exit 2 ;;
 esac
 
 validation/setup.sh libbenchmark-dev
-validation/build_shared.sh -DEXACTFF_BENCH=ON -- exactff_bench exactff_bench_tables
+validation/build_shared.sh -DEXACTFF_BENCH=ON -- exactff_bench
 
 # measure NAME FILTER [OPTION...]: one run, into NAME.json; its printed output, which repeats that, goes into NAME.log.
 measure() {
@@ -40,11 +39,10 @@ largest() { if [ "$1" = sparse ] && ! $quick; then echo 1000000; else echo "${si
 
 rm -rf "$folder/results"
 mkdir -p "$folder/results"
-measure ratios '^(visible|certified|tree|limit|contour|rays)/.*/1000$'
+measure ratios '^(visible|certified|tree|limit|rays)/.*/1000$'
 measure cornell '^cornell/'
 measure view "^view/.*/($(IFS='|'; echo "${sizes[*]:1}")|[1-9]00|1600)\$" --benchmark_repetitions=3
 measure covers '^covers/' --benchmark_repetitions=3
-measure refinement "^refinement/.*/($segments|polygons|triangles)\$"
 for scene in "${scenes[@]}"; do
   measure "growth_$scene" "^certified/edges/$scene/($(IFS='|'; echo "${sizes[*]}"))\$" --benchmark_repetitions=3
   measure "memory_$scene" "^memory/$scene/$(largest "$scene")/" --benchmark_repetitions=1
@@ -53,4 +51,4 @@ if ! $quick; then
   measure growth_million '^certified/edges/sparse/1000000$' --benchmark_repetitions=1
   measure growth_boolean '^certified/boolean/.*/(100|1000|10000)$' --benchmark_repetitions=3
 fi
-"$folder/exactff_bench_tables" "$folder"/results/*.json
+python3 -B validation/bench/tables.py "$folder"/results/*.json

@@ -5,9 +5,8 @@
 #
 # Builds build/clang: Clang, AddressSanitizer, UndefinedBehaviorSanitizer and libFuzzer. EXACTFF_BUILD names another
 # build folder. Each target starts from data/fuzz/TARGET and a fresh working corpus; fuzz_solver, fuzz_view and
-# fuzz_cells, which share a corpus, also from the reference and regression cases. Two targets run at a time. Ends with a
-# summary; the exit code is 1 if there is a finding. A finding of fuzz_solver is shrunk to a case that becomes a test
-# when it is moved into data/regression.
+# fuzz_cells share one. Two targets run at a time. Ends with a summary; the exit code is 1 if there is a finding. A
+# finding of fuzz_solver is shrunk to a case that becomes a test when it is moved into data/regression.
 #
 # For the whole program there is no libFuzzer target: fuzz_program generates its own cases and keeps one of each kind of
 # finding. EXACTFF_SEED, default 1, numbers them.
@@ -28,7 +27,6 @@ validation/build.sh "$build" -DCMAKE_CXX_COMPILER=clang++ -DEXACTFF_FUZZ=ON -DEX
 
 rm -rf "$work"
 mkdir -p "$work/temporary" "$findings"
-"$build/exactff_fuzz_seed" "$work/solver-seeds" data/reference/*.json data/regression/*.json
 
 run() {
   local target=$1 corpus=$1
@@ -36,7 +34,6 @@ run() {
   local corpora=("$work/$1" "data/fuzz/$corpus") options=(-max_total_time="$seconds" -max_len=4096 -timeout=60
     -rss_limit_mb=2048 -report_slow_units=60 -print_final_stats=1 -artifact_prefix="$findings/$1-")
   mkdir "$work/$target"
-  [ ! -d "$work/$corpus-seeds" ] || corpora+=("$work/$corpus-seeds")
   [ ! -f "validation/fuzz/$target.dict" ] || options+=(-dict="validation/fuzz/$target.dict")
   rm -f "$findings/$target"-*
   TMPDIR=$work/temporary "$build/fuzz_$target" "${options[@]}" "${corpora[@]}" > "$work/$target.log" 2>&1 ||
@@ -45,7 +42,7 @@ run() {
 export -f run
 export seconds build work findings
 
-targets=(solver view cells obj ply stl off view3d receivers exr check study truth_journal study_journal)
+targets=(solver view cells obj ply stl off view3d receivers exr check study truth_journal)
 run_program() {
   mkdir "$work/program"
   rm -rf "$findings"/program-*

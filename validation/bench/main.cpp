@@ -10,13 +10,11 @@ int main(int argc, char** argv) try {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   exactff::bench::add_engines();
-  exactff::bench::add_contour();
   exactff::bench::add_rays();
   exactff::bench::add_memory();
   exactff::bench::add_cornell();
   exactff::bench::add_view();
   exactff::bench::add_covers();
-  exactff::bench::add_refinement();
   return benchmark::RunSpecifiedBenchmarks() > 0 ? 0 : 2;  // 0: the filter matches nothing
 } catch (const std::exception& error) {
   std::fprintf(stderr, "exactff_bench: %s\n", error.what());

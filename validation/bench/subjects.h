@@ -3,13 +3,11 @@
 
 namespace exactff::bench {
 
-void add_engines();     // certified/ENGINE, visible/ENGINE, tree
-void add_contour();     // contour/terms, contour/arb96, contour/arb128, contour/arb256, contour/double, limit
-void add_rays();        // rays/coherent, rays/incoherent, rays/scattered, rays/build
-void add_memory();      // memory; meaningful only in a process of its own
-void add_cornell();     // cornell/ENGINE/CLASS, cornell/throughput
-void add_view();        // view/loop, view/sweep, view/contour
-void add_refinement();  // refinement/SCENE/SEGMENTS, refinement/SCENE/polygons, refinement/SCENE/triangles
-void add_covers();      // covers/scratch, covers/neighbour
+void add_engines();  // certified/ENGINE, visible/ENGINE, tree, limit
+void add_rays();     // rays/coherent, rays/incoherent, rays/scattered, rays/build
+void add_memory();   // memory; meaningful only in a process of its own
+void add_cornell();  // cornell/ENGINE/CLASS, cornell/throughput
+void add_view();     // view/loop, view/sweep, view/contour
+void add_covers();   // covers/scratch, covers/neighbour
 
 }  // namespace exactff::bench

@@ -343,47 +343,4 @@
      document.title.trim() ? null : 'the page has no title'].filter(Boolean);
 
   window.report_check = check;
-  window.report_marks = {
-    // Rectangles of all figures in a picture of the page of this scale; and all marks away, or back.
-    places: (scale) => list('figure').filter(shown).flatMap((figure) => media_of(figure).map((medium) => {
-      const box = medium.getBoundingClientRect();
-      const x = scale * (box.left + scrollX), y = scale * (box.top + scrollY);
-      return {name: name_of(figure), x, y, width: scale * box.width, height: scale * box.height};
-    })),
-    hide: (hidden) => list('figure').flatMap(media_of).forEach((medium) => {
-      const marks = medium.localName === 'img' ? [medium] : hidden ? marks_of(medium) : list(kDrawn, medium);
-      marks.forEach((mark) => { mark.style.visibility = hidden ? 'hidden' : ''; });
-    }),
-    // For each place, whether two pictures of the page agree there. A picture has parts of this height, PNG in base64.
-    looks_the_same: async (before, after, height, places) => {
-      const same = places.map(({width, height}) => width > 0 && height > 0);
-      for (let part = 0; part < Math.min(before.length, after.length); ++part) {
-        const [one, other] = await Promise.all([pixels_of(before[part]), pixels_of(after[part])]);
-        places.forEach((place, i) => {
-          if (same[i] && differ(one, other, place, part * height)) same[i] = false;
-        });
-      }
-      return same;
-    },
-  };
-
-  async function pixels_of(png) {
-    const image = new Image();
-    image.src = `data:image/png;base64,${png}`;
-    await image.decode();
-    const context = new OffscreenCanvas(image.width, image.height).getContext('2d', {willReadFrequently: true});
-    context.drawImage(image, 0, 0);
-    return context.getImageData(0, 0, image.width, image.height);
-  }
-  function differ(one, other, place, top) {
-    const left = Math.max(0, Math.ceil(place.x)), right = Math.min(one.width, Math.floor(place.x + place.width));
-    const first = Math.max(0, Math.ceil(place.y) - top);
-    const last = Math.min(one.height, other.height, Math.floor(place.y + place.height) - top);
-    for (let y = first; y < last; ++y) {
-      const row = (pixels) => pixels.data.subarray(4 * (y * pixels.width + left), 4 * (y * pixels.width + right));
-      const [a, b] = [row(one), row(other)];
-      if (a.some((value, k) => value !== b[k])) return true;
-    }
-    return false;
-  }
 })();

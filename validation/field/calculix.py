@@ -90,7 +90,7 @@ def without_polygons(cells):
 
 def with_backs(cells, patches):
     """The cells, and then the backs of those of some patches, as cells of one patch more: a face hides nothing from its
-    back. They lie a little behind: two sides in one plane can hide each other (explain.py)."""
+    back. They lie a little behind: two sides in one plane can hide each other."""
     points, corners = list(cells.points), list(cells.corners)
     turned = [k for k, patch in enumerate(cells.patch) if patch in patches]
     for k in turned:

@@ -106,8 +106,8 @@ class Truth:
         face = channels(path, ["id.face"], "uint")[:, :, 0]
         around = numpy.pad(face, 1, mode="edge")
         same = [around[row:row + size, column:column + size] == face for row in range(3) for column in range(3)]
-        lamp = channels(path, ["id.patch"], "uint")[:, :, 0] == 3  # the third patch of the file
-        self.compared = numpy.all(same, axis=0) & (face > 0) & ~lamp
+        self.patch = channels(path, ["id.patch"], "uint")[:, :, 0]
+        self.compared = numpy.all(same, axis=0) & (face > 0) & (self.patch != 3)  # the lamp is the file's third patch
         # There is one colour of light, so the relative error of a pixel is the same in all channels. The brightest of
         # them stands for the pixel.
         self.channel = picture.argmax(axis=2)
@@ -178,13 +178,6 @@ def measure(program, folder, size, runs, truth, cycles, setting, samples):
             **statistics(pictures, truth)}
 
 
-def show(row):
-    print(f"{row['setting']:11} {row['samples']:5} samples: {row['seconds']:.3f} s, exact {row['exact_seconds']:.3f} s;"
-          f" mean ratio {row['mean_ratio']:.5f}, whole lamp {row['whole_lamp_ratio']:.5f}, black"
-          f" {row['black_share']:.5f}; of the brightest: RMS {row['rms_of_brightest']:.2e}, noise"
-          f" {row['noise_of_brightest']:.2e}, bias {row['bias_of_brightest']:.2e}", flush=True)
-
-
 def finished_rows(path):
     if not path.exists():
         return []
@@ -207,7 +200,7 @@ def main():
             version = run(["blender", "--version"])[0].splitlines()[0]
             colour = f"{100 * FULL_COLOUR:g} %"
             file.write("# title: Cycles, the path tracer of Blender, in the Cornell box\n")
-            file.write(f"# command: {' '.join(['validation/field/cycles.sh', *sys.argv[3:]])}\n")
+            file.write(f"# command: {' '.join(['validation/field/measure.sh cycles', *sys.argv[3:]])}\n")
             file.write(f"# maps: Full colour is {colour} of the brightest pixel. Grey is not compared.\n")
             file.write("# Cycles' time is the render alone; exact includes the start, the scene and the file.\n")
             file.write(f"# {SCENE}, {json.dumps(CAMERA)}, {size} x {size} pixels, {version}, {THREADS} threads\n")
@@ -219,7 +212,7 @@ def main():
             row = measure(program, folder, size, runs, truth, cycles, setting, samples)
             table.writerow({name: f"{value:.7g}" if isinstance(value, float) else value for name, value in row.items()})
             file.flush()
-            show(row)
+            print(row, flush=True)
     cycles.close()
 
 

@@ -15,7 +15,7 @@ import sys
 
 import numpy
 
-from cycles import CAMERA, SCENE, Cycles, channels, render_exactly, root_mean_square, run
+from cycles import CAMERA, SCENE, Cycles, Truth, channels, render_exactly, root_mean_square, run
 
 BOUNCES = 256
 BOX = 556  # the longest side of the scene's box
@@ -52,7 +52,7 @@ class Seeds:
 
 
 class Gathered:
-    """The image of all light from cells of 1 / parts of the box, and the pixels to compare (see Truth of cycles.py)."""
+    """The image of all light from cells of 1 / parts of the box."""
 
     def __init__(self, program, folder, size, parts):
         solution, image = folder / f"cells_{parts}.csv", folder / f"cells_{parts}_{size}.exr"
@@ -67,28 +67,12 @@ class Gathered:
             self.cells = sum("," in line and ",red," in line for line in file)
 
 
-class Pixels:
-    """Those that see a face, not the lamp, as do all their neighbours; of the undivided scene."""
-
-    def __init__(self, program, folder, size):
-        render_exactly(program, size, folder / "exact.exr", "--layers")
-        face = channels(folder / "exact.exr", ["id.face"], "uint")[:, :, 0]
-        self.patch = channels(folder / "exact.exr", ["id.patch"], "uint")[:, :, 0]
-        around = numpy.pad(face, 1, mode="edge")
-        same = [around[row:row + size, column:column + size] == face for row in range(3) for column in range(3)]
-        self.compared = numpy.all(same, axis=0) & (face > 0) & (self.patch != 1 + PATCHES.index("light"))
-
-    def groups(self):
-        yield "all", self.compared
-        for number, name in enumerate(PATCHES, 1):
-            chosen = self.compared & (self.patch == number)
-            if chosen.any():
-                yield name, chosen
-
-
-def rows_of(name, seeds, gathered, pixels):
-    top = gathered.values[pixels.compared].max()
-    for patch, chosen in pixels.groups():
+def rows_of(name, seeds, gathered, truth):
+    top = gathered.values[truth.compared].max()
+    for number, patch in enumerate(["all", *PATCHES]):
+        chosen = truth.compared & (truth.patch == number) if number > 0 else truth.compared
+        if not chosen.any():
+            continue
         ratios = seeds.mean[chosen].mean(axis=0) / gathered.values[chosen].mean(axis=0)
         rms = root_mean_square(seeds.mean[chosen] - gathered.values[chosen])
         noise = seeds.noise(chosen)
@@ -99,24 +83,17 @@ def rows_of(name, seeds, gathered, pixels):
                "left_of_brightest": numpy.sqrt(max(0.0, rms**2 - noise**2)) / top}
 
 
-def show(row):
-    print(f"{row['setting']:9} 1/{row['cells_per_side']} of the box, {row['cells']:4} cells, {row['patch']:11}: Cycles /"
-          f" gathered {row['ratio_red']:.5f} {row['ratio_green']:.5f} {row['ratio_blue']:.5f} +-"
-          f" {row['ratio_noise']:.5f}; of the brightest: RMS {row['rms_of_brightest']:.2e}, noise"
-          f" {row['noise_of_brightest']:.2e}, left {row['left_of_brightest']:.2e}", flush=True)
-
-
 def main():
     program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
     size, samples, count, levels = (64, 256, 3, [2, 4]) if "--quick" in sys.argv else (128, 1024, 4, [2, 4, 8])
     cycles = Cycles(size)
     lamps = [(name, Seeds(folder, size, samples, count, cycles, name, job)) for name, job in LAMPS]
     cycles.close()
-    pixels = Pixels(program, folder, size)
+    truth = Truth(program, size, folder)
     with open(folder / "cycles_bounces.csv", "w", encoding="utf-8", newline="") as file:
         version = run(["blender", "--version"])[0].splitlines()[0]
         file.write("# title: All light in the Cornell box: Cycles, and images gathered from cells of one radiosity\n")
-        file.write(f"# command: {' '.join(['validation/field/cycles.sh --bounces', *sys.argv[3:]])}\n")
+        file.write(f"# command: {' '.join(['validation/field/measure.sh cycles_bounces', *sys.argv[3:]])}\n")
         file.write("# ratio: of the means of all pixels of a patch, Cycles over gathered; noise: of the mean of seeds\n")
         file.write(f"# {SCENE}, {json.dumps(CAMERA)}, {size} x {size} pixels, {version}, {BOUNCES} bounces at most, "
                    f"{count} seeds of {samples} samples\n")
@@ -125,9 +102,9 @@ def main():
         for parts in levels:
             gathered = Gathered(program, folder, size, parts)
             for name, seeds in lamps:
-                for row in rows_of(name, seeds, gathered, pixels):
+                for row in rows_of(name, seeds, gathered, truth):
                     table.writerow({key: f"{one:.7g}" if isinstance(one, float) else one for key, one in row.items()})
-                    show(row)
+                    print(row, flush=True)
                 file.flush()
 
 

@@ -178,13 +178,6 @@ def measure_once(solve, scene, across, exact, needs):
             **exact.judge(matrix), "exact_cpu_seconds": exact.seconds, "exact_width": exact.width}
 
 
-def show(row):
-    print(f"{row['scene']}, {row['setting']}, {row['across']} across: {row['faces']} faces, {row['cpu_seconds']:.2f} s,"
-          f" worst {row['worst']:.1e}, RMS {row['rms']:.1e}, row sum {row['row_sum']:.1e}, {row['beyond_limit']} of"
-          f" {row['entries']} beyond {LIMIT:g}; exact {row['exact_cpu_seconds']:.2f} s, width {row['exact_width']:.1e}",
-          flush=True)
-
-
 def measure(title, script, notes, settings, solve):
     """Runs all settings on all scenes and writes the table. A setting: (name, values of across, what solve needs, only
     closed scenes). solve(scene, across, **needs) returns (number of faces, factors of patches, seconds,
@@ -196,7 +189,7 @@ def measure(title, script, notes, settings, solve):
     with open(path, "a", encoding="utf-8", newline="") as file:
         table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         if file.tell() == 0:
-            for note in [f"title: {title}", f"command: validation/field/{script}.sh", *notes,
+            for note in [f"title: {title}", f"command: validation/field/measure.sh {script}", *notes,
                          "cells: exactff convert --divide, the longest edge / across",
                          *(f"exact, {source.label}: exactff matrix {source.path} {' '.join(source.ours)} --threads 1"
                            for source in SCENES)]:
@@ -217,4 +210,4 @@ def measure(title, script, notes, settings, solve):
                 table.writerow({key: f"{value:.4g}" if isinstance(value, float) else value
                                 for key, value in row.items()})
                 file.flush()
-                show(row)
+                print(row, flush=True)

@@ -20,4 +20,13 @@ inline void require_words(const InputError& error) {
   if (error.problems().empty() || std::ranges::any_of(error.problems(), silent)) fail("an error that says nothing");
 }
 
+template <class Use>
+void unless_refused(const Use& use) {
+  try {
+    use();
+  } catch (const InputError& error) {
+    require_words(error);
+  }
+}
+
 }  // namespace exactff::validation

@@ -20,15 +20,6 @@ Scene floor_and_light() {
   return generate::build(plain);
 }
 
-template <class Use>
-void unless_refused(const Use& use) {
-  try {
-    use();
-  } catch (const InputError& error) {
-    require_words(error);
-  }
-}
-
 void check(const exr::GBuffer& gbuffer) {
   const auto& [data, display, marks, at] = gbuffer.frame;
   if (marks.size() != data.pixels()) fail("a pixel without a mark");

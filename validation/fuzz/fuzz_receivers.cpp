@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <set>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "exactff/exact.h"
@@ -52,10 +51,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const Scene scene = room();
   static const TemporaryDirectory directory;
   const std::string text(reinterpret_cast<const char*>(data), size);
-  try {
-    check(scene, read_receivers(directory.write("receivers.csv", text), scene));
-  } catch (const InputError& error) {
-    require_words(error);
-  }
+  unless_refused([&] { check(scene, read_receivers(directory.write("receivers.csv", text), scene)); });
   return 0;
 }

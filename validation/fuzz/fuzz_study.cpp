@@ -44,11 +44,7 @@ void check(const flags::StudyFile& study) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace exactff::validation;
   static const TemporaryDirectory directory;
-  try {
-    check(exactff::flags::parse_study_file(
-        directory.write("run.study", std::string(reinterpret_cast<const char*>(data), size))));
-  } catch (const exactff::InputError& error) {
-    require_words(error);
-  }
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  unless_refused([&] { check(exactff::flags::parse_study_file(directory.write("run.study", text))); });
   return 0;
 }

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "generate/families.h"
 #include "support/oracle.h"
@@ -38,25 +37,6 @@ TEST(Minimise, KeepsWhatTheFailureNeeds) {
   EXPECT_EQ(small.patches.size(), 2u);  // the source is never dropped
   EXPECT_EQ(small.vertices.size(), 6u) << "of two triangles";
   EXPECT_EQ(small.point, Vec3{});
-}
-
-TEST(Minimise, DropsHolesBeforeFaces) {
-  const auto fails = [](const PlainScene& scene) { return has_patch(scene, "frame"); };
-  const PlainScene small = minimised(frame_and_plate(), fails);
-  ASSERT_TRUE(has_patch(small, "frame"));
-  const auto frame = std::ranges::find(small.patches, "frame", &PlainPatch::name);
-  EXPECT_EQ(frame->faces.at(0).rings.size(), 1u);
-  EXPECT_EQ(frame->faces.at(0).rings.at(0).size(), 3u);
-}
-
-TEST(Minimise, ShortensNumbers) {
-  const auto fails = [](const PlainScene& scene) {
-    return std::ranges::any_of(scene.vertices, [](const Vec3& v) { return v.x > 0.3 && v.x < 0.34; });
-  };
-  const PlainScene small = minimised(frame_and_plate(), fails);
-  ASSERT_TRUE(fails(small));
-  const auto v = std::ranges::find_if(small.vertices, [](const Vec3& p) { return p.x > 0.3 && p.x < 0.34; });
-  EXPECT_EQ(v->x, std::round(v->x * 2048) / 2048) << "ten bits are enough";
 }
 
 // A failure that every change would remove, including one by an exception.

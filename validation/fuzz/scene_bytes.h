@@ -45,8 +45,4 @@ struct FuzzCase {
 inline constexpr std::size_t kMaxFaces = 24;     // in total
 inline constexpr std::size_t kMaxCorners = 200;  // in total
 
-// Bytes that decode to exactly this scene. Used to add known scenes to the corpus. Requires finite numbers. Throws
-// std::invalid_argument if the scene exceeds the limits of the decoder.
-[[nodiscard]] std::vector<std::uint8_t> encode(const generate::PlainScene& scene, Identity identity);
-
 }  // namespace exactff::validation

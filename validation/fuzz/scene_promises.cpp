@@ -5,12 +5,9 @@
 #include <set>
 #include <span>
 
-#include "generate/plain_scene.h"
 #include "support/oracle_sum.h"
 
 namespace exactff::validation {
-
-using generate::to_text;
 
 namespace {
 
@@ -125,51 +122,6 @@ std::string broken_promise(const Scene& scene) {
     if (std::string wrong = broken_by(scene, FaceId(static_cast<std::uint32_t>(i))); !wrong.empty()) return wrong;
   }
   return broken_by_names(scene);
-}
-
-namespace {
-
-std::string colour(const char* keyword, const Rgb& c) {
-  return std::string(keyword) + ' ' + to_text(c.r) + ' ' + to_text(c.g) + ' ' + to_text(c.b) + '\n';
-}
-
-// Group names are one word; only object names contain blanks.
-bool patches_are_objects(const Scene& scene) {
-  return std::ranges::any_of(
-      scene.patches(), [](const Patch& patch) { return patch.name.find_first_of(" \t\v\f") != std::string::npos; });
-}
-
-std::string patch_line(const Patch& patch, bool object) {
-  // The second word is ignored; it keeps a backslash at the end of the name from joining the next line.
-  return object ? "o " + patch.name + '\n' : "g " + patch.name + " .\n";
-}
-
-// A ring with only one or two corners left after repetitions gets its repetitions back.
-std::string face_line(const Face& face) {
-  std::string out = "f";
-  if (face.rings.empty()) return out + '\n';
-  std::vector<std::uint32_t> ring = face.rings.front();
-  while (!ring.empty() && ring.size() < 3) ring.push_back(ring.back());
-  for (const std::uint32_t index : ring) out += ' ' + std::to_string(index + 1ULL);
-  return out + '\n';
-}
-
-}  // namespace
-
-SceneText text_of(const Scene& scene, const std::string& mtl_name) {
-  SceneText out{"mtllib " + mtl_name + '\n', {}};
-  for (const Material& material : scene.materials()) {
-    out.mtl += "newmtl " + material.name + '\n' + colour("Kd", material.reflectance) + colour("Ke", material.radiosity);
-    out.obj += "usemtl " + material.name + '\n';
-  }
-  for (const Vec3& v : scene.vertices())
-    out.obj += "v " + to_text(v.x) + ' ' + to_text(v.y) + ' ' + to_text(v.z) + '\n';
-  const bool objects = patches_are_objects(scene);
-  for (const Face& face : scene.faces()) {
-    out.obj += patch_line(scene.patch(face.patch), objects);
-    out.obj += "usemtl " + scene.material(face.material).name + '\n' + face_line(face);
-  }
-  return out;
 }
 
 }  // namespace exactff::validation

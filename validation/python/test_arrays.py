@@ -61,16 +61,11 @@ def test_lossless_types_are_taken():
     (np.zeros((1, 3), complex), "complex128 is not taken"),
     (np.zeros((1, 3), np.longdouble), "rounded to double precision"),
     (np.array([[2**53 + 1, 0, 0]]), r"points\[0, 0\] is a whole number beyond 2\^53"),
-    (np.array([[2**64 - 1, 0, 0]], np.uint64), r"beyond 2\^53"),
-    (np.array([[0, -(2**63), 0]]), r"points\[0, 1\] is a whole number beyond"),
     (np.array([[fractions.Fraction(1, 3), 0, 0]]), "object is not taken"),
-    (np.zeros((1, 3), bool), "bool is not taken"),
     ([["1", "2", "3"]], "text is no number"),
     ([[1, 2, 3], [1, 2]], "different lengths"),
     (np.ma.masked_array([[1.0, 2, 3]], [[True, False, False]]), "masked"),
     (np.zeros((4, 2)), r"shape \(4, 2\)"),
-    (np.zeros(()), r"shape \(\)"),
-    (np.zeros((1, 3), "datetime64[s]"), "a date is no number"),
     (None, "object is not taken"),
 ])
 def test_bad_points_are_refused_with_words(points, words):
@@ -83,16 +78,11 @@ def test_bad_points_are_refused_with_words(points, words):
     (dict(normals=np.zeros((12, 3)) + [0, 0, np.nan]), r"normals\[0, 2\] is nan"),
     (dict(normals=np.ones((5, 3))), "do not fit together"),
     (dict(on=np.full(12, 99)), r"on\[0\] is 99 \(faces are numbered from 0 to"),
-    (dict(on=np.full(12, -2)), r"on\[0\] is -2"),
-    (dict(on=np.zeros(5, int)), "on has the shape"),
     (dict(on=np.zeros(12)), "indices are whole numbers"),
     (dict(on=["floor"] * 5), "on has 5 entries"),
-    (dict(on="flor"), "floor"),
     (dict(on="auto:-1"), "distance of at least 0"),
     (dict(threads=-1), "threads is -1"),
-    (dict(threads=1.5), "threads is 1.5"),
     (dict(precision_cap=2), "precision_cap is 2"),
-    (dict(transparent="glass"), "glass"),
     (dict(transparent=[3]), "is no name"),
 ])
 def test_bad_options_are_refused_with_words(changed, words):
@@ -127,15 +117,6 @@ def test_own_faces_in_every_form():
     with pytest.warns(exactff.ModellingWarning, match="behind"):
         mixed = values(below[[0, 1, 0]], NORMALS[:3], ["floor", None, [floor]])
     assert (mixed.ravel() > 0.0).tolist() == [True, False, True] and TRUE[:2].all()
-
-
-def test_a_point_behind_its_floor_warns_unless_it_is_on_it():
-    below = POINTS - [0.0, 1e-9, 0.0]
-    with pytest.warns(exactff.ModellingWarning, match="behind"):
-        assert not values(below, NORMALS, None).any()
-    assert np.allclose(values(below, NORMALS, "auto"), TRUE, rtol=1e-6, atol=0.0)
-    with pytest.warns(exactff.ModellingWarning, match="found no face for 12 of 12"):
-        values(POINTS + [0.0, 50.0, 0.0], NORMALS, "auto")
 
 
 def test_transparent_for_one_call():

@@ -28,15 +28,6 @@ def test_it_is_the_program_s_bit_for_bit():
     assert ROOM.form_factors(POINT, UP, ["light"], on="floor", full=True).gradient is None
 
 
-def test_differences_come_near():
-    h = 2.0**-10
-    points = np.array(POINT) + h * np.array([[1, 0, 0], [-1, 0, 0], [0, 0, 1], [0, 0, -1]])
-    values = ROOM.form_factors(points, UP, ["light"], on="floor")[:, 0]
-    gradient = ROOM.form_factors(POINT, UP, ["light"], on="floor", gradient=True).gradient[0]
-    assert gradient[0] == pytest.approx((values[0] - values[1]) / (2 * h), rel=1e-7)
-    assert gradient[2] == pytest.approx((values[2] - values[3]) / (2 * h), rel=1e-7)
-
-
 def test_kinks_are_nan_with_a_status():
     scene = with_sheet()
     f = scene.form_factors([[0, 0, 0], [0.25, 0, 0]], [0, 0, 1], ["light"], gradient=True)
@@ -75,12 +66,3 @@ def test_vertices_add_up_to_the_gradient_and_move_the_value():
     assert v.derivative.sum(axis=0) == pytest.approx(-g.position, abs=1e-15)
     assert v.enclosures[4][0].nearest == v.derivative[4, 0]
     assert scene.form_factor([0.1, 0.2, 0], [0, 0, 1], "light", gradient=True).gradient.vertices is None
-
-
-def test_vertices_that_touch_the_source_are_kinks():
-    wall = [[-0.5, 0, 2], [0.5, 0, 2], [0.5, 0.1, 1], [-0.5, 0.1, 1]]  # hangs from the light
-    scene = exactff.Scene(LIGHT + wall, [[0, 1, 2, 3], [4, 5, 6, 7]], patch=[0, 1], names=["light", "wall"])
-    g = scene.form_factor([0.2, 0.7, 0], [0, 0, 1], "light", gradient=True, vertices=True).gradient
-    kinks = np.isnan(g.vertices.derivative).all(axis=1)
-    assert g.kink is None and {4, 5} <= set(g.vertices.vertex[kinks].tolist())
-    assert not {6, 7} & set(g.vertices.vertex[kinks].tolist())

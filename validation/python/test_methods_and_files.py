@@ -21,14 +21,6 @@ def test_every_method_is_near_the_truth():
     assert same_bits(exactff.methods.evaluate("exact", ROOM, *AT, "light", GRID.on), TRUE.value)
 
 
-def test_threads_change_no_estimate():
-    text = "hemicube:resolution=64"
-    one = exactff.methods.evaluate(text, ROOM, *AT, ["light", "back"], GRID.on, threads=1)
-    assert same_bits(one, exactff.methods.evaluate(text, ROOM, *AT, ["light", "back"], GRID.on, threads=3))
-    other = exactff.methods.evaluate("hemicube", ROOM, *AT, ["light", "back"], GRID.on)
-    assert one.shape == (30, 2) and not same_bits(one, other)
-
-
 @pytest.mark.parametrize("text, words", [("hemicub", "hemicube"), ("hemicube:resolution=3", "resolution"),
                                          ("hemicube:size=4", "size")])
 def test_unknown_methods_and_settings(text, words):
@@ -172,18 +164,6 @@ def test_receivers_and_values_in_one_file(tmp_path):
     assert arrays["about"][0].startswith("exactff ") and any("hash" in line for line in arrays["about"])
 
 
-def test_a_small_file_of_receivers_and_values(tmp_path):
-    """Sixty bytes for each receiver of one source, and the arrays' heads; -1 where a receiver lies on no face."""
-    receivers = tmp_path / "r.csv"
-    receivers.write_text("x,y,z,nx,ny,nz\n" + "".join(f"{10 + i % 50},1,{9 + i // 50},0,3,4\n" for i in range(1000)))
-    program("truth", CORNELL, "--receivers", receivers, "-o", tmp_path / "t.csv", "--npz", tmp_path / "t.npz")
-    with np.load(tmp_path / "t.npz") as arrays:
-        assert (arrays["on"] == -1).all() and arrays["faces"].shape == (0,)
-        assert arrays["normals"][0].tolist() == [0.0, 0.6, 0.8]
-        about = arrays["about"].nbytes
-    assert (tmp_path / "t.npz").stat().st_size - about < 60 * 1000 + 2500
-
-
 @pytest.mark.parametrize("arguments, words", [
     ((TRUE, TRUE.value[:3]), "same shape"), ((TRUE.value, "mine.csv"), "truth is not"),
     ((TRUE.value, TRUE.value.astype(complex)), "complex128"), (("nowhere.csv", "mine.csv"), "nowhere.csv"),
@@ -191,25 +171,3 @@ def test_a_small_file_of_receivers_and_values(tmp_path):
 def test_bad_checks(arguments, words):
     with pytest.raises(exactff.InputError, match=words):
         exactff.check(*arguments)
-
-
-def test_names_belong_to_arrays(tmp_path):
-    exactff.truth(ROOM, GRID, tmp_path / "t.csv", "light")
-    with pytest.raises(exactff.InputError, match="its rows name their receivers"):
-        exactff.check(tmp_path / "t.csv", TRUE.value, receivers=GRID)
-
-
-def test_no_file_that_is_read_is_replaced(tmp_path):
-    room = exactff.Scene.read(CORNELL)
-    room.write(tmp_path / "room.obj")
-    room = exactff.Scene.read(tmp_path / "room.obj")
-    at = room.receivers("floor", grid=2)
-    exactff.truth(room, at, tmp_path / "t.csv")
-    before = {file: file.read_bytes() for file in tmp_path.iterdir()}
-    with pytest.raises(exactff.InputError, match="would be replaced"):
-        exactff.truth(room, at, tmp_path / "room.obj", existing="replace")
-    values = np.zeros(4)
-    for name in ("junit", "write_baseline"):
-        with pytest.raises(exactff.InputError, match="would be replaced"):
-            exactff.check(tmp_path / "t.csv", values, **{name: tmp_path / "t.csv"})
-    assert {file: file.read_bytes() for file in before} == before

@@ -120,10 +120,6 @@ def test_an_occluder_is_found_from_its_shadow():
     assert run(sys.executable, "-B", EXAMPLES / "find_occluder.py")
 
 
-def test_examples_are_short():
-    assert all(len(file.read_text().splitlines()) <= 30 for file in EXAMPLES.glob("*.py"))
-
-
 def blocks(document):
     text = (SOURCE / document).read_text()
     return re.findall(r"```python\n(.*?)```(?:\n\nprints\n\n((?:    [^\n]*\n)+))?", text, re.S)

@@ -4,7 +4,6 @@ import fractions
 import xml.etree.ElementTree
 
 import mpmath
-import numpy as np
 import pytest
 
 import exactff
@@ -92,12 +91,3 @@ def test_bad_arguments(arguments, words):
 def test_several_emitters_need_a_name():
     with pytest.raises(exactff.InputError, match="64 patches emit"):
         exactff.Scene.from_model("emitters").form_factor(POINT, UP)
-
-
-def test_the_ball_refuses_other_things():
-    ball = lamp_above().form_factor([0, 0, 0], [0, 0, 1]).enclosure
-    with pytest.raises(TypeError):
-        ball + 1.0
-    with pytest.raises(exactff.InputError, match="from 1 to"):
-        ball.decimals(0)
-    assert isinstance(np.float64(ball.nearest), float)

@@ -33,22 +33,6 @@ def test_two_threads_at_once():
     assert same_bits(found[1], expected) and same_bits(found[2], expected)
 
 
-def test_one_pair_in_many_threads():
-    expected, wrong = ROOM.form_factor(POINT, UP, "light", on="floor").value, []
-
-    def many():
-        for _ in range(200):
-            if ROOM.form_factor(POINT, UP, "light", on="floor").value != expected:
-                wrong.append(1)
-
-    threads = [threading.Thread(target=many) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert not wrong
-
-
 def test_the_gil_is_released():
     ticks, stop = [], threading.Event()
 
@@ -157,16 +141,6 @@ def test_no_leak_in_100000_calls():
     before = resident_bytes()
     some(91_000)
     assert resident_bytes() - before < 2_000_000
-
-
-def test_mistakes_of_a_program_raise():
-    compiled = sys.modules["exactff._exactff"]
-    with pytest.raises(ValueError):  # std::invalid_argument
-        compiled.form_factor(ROOM._scene, POINT, UP, [10**6], "light", False, False, False, False, 0, 65536, None)
-    with pytest.raises(TypeError):
-        compiled.form_factors(ROOM._scene)
-    with pytest.raises(ValueError):
-        compiled.near_misses(ROOM._scene, np.zeros(3), np.zeros((1, 3)), np.zeros((1, 0), np.int64))
 
 
 def test_jemalloc_is_not_loaded():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import exactff
-from support import BLINDS, CORNELL, SCENES, lamp_above, program, same_bits, square
+from support import BLINDS, CORNELL, SCENES, program, same_bits, square
 
 VERTICES = np.array(square(0.0) + square(1.0))
 
@@ -56,12 +56,6 @@ def test_faces_in_every_form():
     mixed = build([[0, 1, 2], [4, 5, 6, 7]])
     assert same_bits(mixed.areas, [0.5, 1.0]) and mixed.rings(1) == [[4, 5, 6, 7]]
     assert build(quads[:, :3]).areas.tolist() == [0.5, 0.5]
-
-
-def test_the_faces_of_a_pyvista_mesh_are_taken():
-    """PyVista is no package of Debian 12; its `faces` is this array."""
-    mesh = types.SimpleNamespace(points=VERTICES.astype(np.float32), faces=np.array([3, 0, 1, 2, 4, 4, 5, 6, 7]))
-    assert exactff.Scene(mesh.points, mesh.faces).areas.tolist() == [0.5, 1.0]
 
 
 def test_patches_and_names():
@@ -199,24 +193,6 @@ def test_receivers_on_every_patch_are_those_of_the_program(tmp_path):
     assert len(named.receivers("all", grid=1)) == 1 and len(named.receivers(["all", "other"], grid=1)) == 2
 
 
-@pytest.mark.parametrize("arguments, words", [
-    (dict(on=["floor", "floor"], grid=2), "is named twice"), (dict(on="flor", grid=2), "floor"),
-    (dict(on="floor", grid=(2.5, 2)), "so many columns and rows"), (dict(on="floor", grid=(1, 2, 3)), "columns and rows"),
-    (dict(on="floor", vertices=True, per_face=True), "--per-face"), (dict(on=[], grid=2), "on names no patch"),
-    (dict(on=[3], grid=2), "patches and faces have names"),
-])
-def test_receivers_that_cannot_be_made(arguments, words):
-    with pytest.raises(exactff.InputError, match=words):
-        exactff.Scene.read(CORNELL).receivers(**arguments)
-
-
-def test_names_beyond_ascii():
-    scene = build([[0, 1, 2, 3], [4, 5, 6, 7]], patch=["Lämpchen", "床"])
-    assert scene.names == ("Lämpchen", "床")
-    with pytest.raises(exactff.InputError, match="床"):
-        scene.faces_of("床:9")
-
-
 def test_patterns_and_lists_of_names():
     room = exactff.Scene.read(CORNELL)
     blocks = ("short_block", "tall_block")
@@ -316,8 +292,3 @@ def test_polygons_with_names_become_patches(tmp_path):
     exec(code, {"exactff": exactff, "surfaces": surfaces})
     scene = exactff.Scene.read(tmp_path / "house.obj")
     assert scene.names == ("floor", "Roof 1") and scene.areas.tolist() == [1.0, 0.5]
-
-
-def test_a_patch_object_of_the_lamp():
-    patch = lamp_above().patches[0]
-    assert patch[:4] == ("lamp", (0,), 1.0, (0.0, 0.0, -1.0)) and patch.emits

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import exactff
-from support import CORNELL, POINT, SCENES, UP, lamp_above, program, same_bits, square
+from support import CORNELL, POINT, SCENES, UP, lamp_above, program, same_bits
 
 L_ROOM = str(SCENES / "formats" / "test4.vs3")
 ROOM = exactff.Scene.read(CORNELL)
@@ -109,24 +109,6 @@ def test_a_matrix_is_saved_as_the_program_writes_it(tmp_path):
         again.save(tmp_path / "x.csv")
 
 
-def test_a_matrix_with_overlaps_makes_no_energy(tmp_path):
-    scene = exactff.Scene(square(0.0) + square(0.0, 0.5) + square(1.0), [[0, 1, 2, 3], [4, 5, 6, 7], [11, 10, 9, 8]],
-                          patch=["wall", "window", "lamp"])
-    matrix = exactff.view_factor_matrix(scene, accuracy=1e-2)
-    matrix.save(tmp_path / "m.csv")
-    for name in ("m.idf", "m.out"):
-        with pytest.raises(exactff.InputError, match="energy"):
-            matrix.save(tmp_path / name)
-    assert [file.name for file in tmp_path.iterdir()] == ["m.csv"]
-
-
-def test_the_sky_is_a_column_by_name():
-    lamp = lamp_above((0.5, 0.5))
-    one, other = (exactff.view_factor_matrix(lamp, "lamp", *which, accuracy=1e-3, **more)
-                  for which, more in (((["sky", "plates"],), {}), ((["plates"],), {"sky": True})))
-    assert one.to_names == other.to_names == ("plates",) and one.open == other.open
-
-
 def test_a_matrix_is_certified_on_request():
     lamp = lamp_above((0.5, 1.0))
     matrix = exactff.view_factor_matrix(lamp, accuracy=1e-3, certify=True, backs=True, sky=True)
@@ -142,14 +124,6 @@ def test_the_sky_alone():
         assert alone.value.shape == (2, 0) and alone.from_names == ("lamp", "plates") and alone.to_names == ()
         assert same_bits(alone.areas_from, whole.areas_from) and alone.areas_to.shape == (0,)
         assert (alone.open, alone.back) == (whole.open if "sky" in more else None, whole.back if "backs" in more else None)
-
-
-def test_some_rows_and_columns():
-    lamp = lamp_above((0.5, 1.0))
-    matrix = exactff.view_factor_matrix(lamp, "lamp", ["plates", "lamp"])
-    assert matrix.value.shape == (1, 2) and matrix.back is None and matrix.open is None
-    assert len(matrix.reasons_against_one) == 2
-    assert exactff.view_factor_matrix(lamp, "lamp", []).value.shape == (1, 0)
 
 
 def test_a_budget_that_is_used_up_warns():

@@ -12,7 +12,6 @@
 #include "files/parallel.h"
 #include "kernel/disc.h"
 #include "kernel/expect.h"
-#include "kernel/statistics.h"
 #include "models/random.h"
 #include "studies/honest_families.h"
 #include "view_factors/exact_scene.h"
@@ -135,7 +134,7 @@ HonestyScene scene_with_entries(std::uint64_t number, const HonestySize& size) {
   return scene;
 }
 
-void count_entry(const HonestyEntry& entry, HonestyRow& row, std::vector<ErrorRatio>& ratios) {
+void count_entry(const HonestyEntry& entry, HonestyRow& row) {
   ++row.entries;
   row.wide += entry.factor.accurate ? 0U : 1U;
   const Verdict found = verdict(entry.factor, entry.truth);
@@ -144,13 +143,6 @@ void count_entry(const HonestyEntry& entry, HonestyRow& row, std::vector<ErrorRa
   const ErrorRatio ratio = error_ratio(entry.factor, entry.truth);
   row.worst.at_least = std::max(row.worst.at_least, ratio.at_least);
   if (found == Verdict::kHolds) row.worst.at_most = std::max(row.worst.at_most, ratio.at_most);
-  ratios.push_back(ratio);
-}
-
-double p95_of(std::span<const ErrorRatio> ratios, double ErrorRatio::*end) {
-  std::vector<double> values;
-  for (const ErrorRatio& ratio : ratios) values.push_back(ratio.*end);
-  return kernel::percentile(std::move(values), 95.0);
 }
 
 }  // namespace
@@ -167,12 +159,6 @@ ErrorRatio error_ratio(const ViewFactor& entry, const Bounds& truth) {
   const double below = truth.lower - entry.value, above = entry.value - truth.upper;
   return {std::max({0.0, below, above}) / reported,
           std::max(std::abs(entry.value - truth.lower), std::abs(entry.value - truth.upper)) / reported};
-}
-
-HonestySize honesty_size(bool abridged) {
-  HonestySize size;
-  if (abridged) size.scenes = 24;
-  return size;
 }
 
 HonestyScene honesty_scene(std::uint64_t number) {
@@ -224,22 +210,18 @@ std::vector<HonestyRow> honesty_rows(std::span<const HonestyScene> scenes) {
     const bool one_row = claim == Claim::kZero || way == Way::kPoints;
     return std::tuple(-static_cast<int>(claim), static_cast<int>(way), one_row ? 0.0 : -entry.accuracy);
   };
-  std::map<std::tuple<int, int, double>, std::pair<HonestyRow, std::vector<ErrorRatio>>> sorted;
+  std::map<std::tuple<int, int, double>, HonestyRow> sorted;
   for (const HonestyScene& scene : scenes) {
     for (const HonestyEntry& entry : scene.entries) {
-      auto& [row, ratios] = sorted[key(entry)];
+      HonestyRow& row = sorted[key(entry)];
       row.claim = entry.factor.claim;
       row.way = entry.factor.way;
       row.accuracy = std::abs(std::get<2>(key(entry)));
-      count_entry(entry, row, ratios);
+      count_entry(entry, row);
     }
   }
   std::vector<HonestyRow> rows;
-  for (auto& [at, found] : sorted) {
-    auto& [row, ratios] = found;
-    if (!ratios.empty()) row.p95 = {p95_of(ratios, &ErrorRatio::at_least), p95_of(ratios, &ErrorRatio::at_most)};
-    rows.push_back(row);
-  }
+  for (const auto& [at, row] : sorted) rows.push_back(row);
   return rows;
 }
 

@@ -11,7 +11,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,7 +27,6 @@ struct HonestySize {
   std::vector<std::size_t> budgets = {30, 100, 300};          // cells of an entry
   std::vector<std::size_t> truth_budgets = {100, 600, 3000};  // cells of each enclosure: at first, and at last
 };
-[[nodiscard]] HonestySize honesty_size(bool abridged);
 
 // What is proved about a view factor.
 struct Bounds {
@@ -80,9 +78,8 @@ struct HonestyRow {
   Way way = Way::kCells;
   double accuracy = 0.0;
   std::size_t entries = 0, holds = 0, open = 0, broken = 0;
-  std::size_t wide = 0;           // wider than the accuracy asked for
-  ErrorRatio worst;               // the largest of each, at_most only of entries that hold
-  std::optional<ErrorRatio> p95;  // the 95th percentile, of all entries that report an error
+  std::size_t wide = 0;  // wider than the accuracy asked for
+  ErrorRatio worst;      // the largest of each, at_most only of entries that hold
 };
 
 struct HonestyStudy {
@@ -100,6 +97,6 @@ struct HonestyStudy {
 
 // The rows for readers.
 [[nodiscard]] NumberTable honesty_table(std::span<const HonestyRow> rows);
-[[nodiscard]] Result honesty_chapter(const HonestyStudy& study, const HonestySize& size);
+[[nodiscard]] Result honesty_chapter(const HonestyStudy& study);
 
 }  // namespace exactff::experiments

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "studies/honesty.h"
-#include "studies/view_factors.h"
 #include "text/phrases.h"
 
 namespace exactff::experiments {
@@ -72,45 +71,6 @@ std::string broken_sentence(const HonestyStudy& study) {
            ": " + text::enumerate(broken_claims(study)) + '.';
   }
   return "No true error of " + of + " is proved to exceed the reported one.";
-}
-
-std::string method_sentence(const HonestyStudy& study, const HonestySize& size) {
-  std::vector<std::string> budgets;
-  for (const std::size_t budget : size.budgets) budgets.push_back(std::to_string(budget));
-  const std::string contradictions = study.contradictions == 0
-                                         ? "The two enclosures are disjoint in no scene."
-                                         : "In " + counted(study.contradictions, "scene") +
-                                               " the two enclosures are disjoint, so one of them is wrong.";
-  return "Half of the scenes have a floor, a source above it and one to four faces between them; the others were made "
-         "to break what is claimed, with thin gaps, cut corners, slits, holes, sheets of two faces, extreme sizes and "
-         "offsets. A view factor from one patch to another is asked for at one of " +
-         counted(size.accuracies.size(), "accuracy", "accuracies") +
-         ", as certified and as estimated, with budgets of " + text::enumerate(budgets) +
-         " cells, alone and with points for what they leave unknown, and with a single cell, which leaves points. The "
-         "truth is what two certified enclosures have in "
-         "common, one from each patch to the other. They are narrowed until they judge the entries, with up to " +
-         std::to_string(size.truth_budgets.back()) +
-         " cells each. An error exceeds the reported one if the entry’s interval and the truth have no "
-         "number in "
-         "common. An entry is open if they overlap and the truth is not inside. " +
-         contradictions;
-}
-
-std::string open_sentence(const HonestyStudy& study) {
-  const Sums sums = sums_of(study);
-  if (sums.open == 0) return {};
-  return "The truth is not known well enough to judge " + std::to_string(sums.open) + " of " +
-         counted(sums.entries, "entry", "entries") +
-         ". Entries estimated by cells often report errors that are smaller than the width of these enclosures.";
-}
-
-std::string level_sentence(const HonestyStudy& study) {
-  const auto row = std::ranges::find(study.rows, Way::kPoints, &HonestyRow::way);
-  if (row == study.rows.end() || !row->p95) return {};
-  return "Entries by points promise their error but with a probability of 10⁻⁶, whatever the point factor does, so "
-         "most "
-         "errors are far smaller: the true error over the reported one has a 95th percentile between " +
-         rounded(row->p95->at_least, 2) + " and " + rounded(row->p95->at_most, 2) + " (the truth is an interval, too).";
 }
 
 std::string failure_sentence(const HonestyStudy& study) {
@@ -185,6 +145,11 @@ CsvFile row_table(const HonestyStudy& study) {
   return table.finish("honesty-rows.csv", "true errors of view factors over the reported ones");
 }
 
+// "10⁻³"
+std::string accuracy_text(double accuracy) {
+  return "10" + text::superscript(static_cast<int>(std::round(std::log10(accuracy))));
+}
+
 std::string name_of(const HonestyRow& row) {
   const std::string claim = words_of(row.claim, row.way);
   return row.accuracy > 0.0 ? claim + ", " + accuracy_text(row.accuracy) : claim;
@@ -205,10 +170,9 @@ NumberTable honesty_table(std::span<const HonestyRow> rows) {
   return table;
 }
 
-Result honesty_chapter(const HonestyStudy& study, const HonestySize& size) {
+Result honesty_chapter(const HonestyStudy& study) {
   Result result{.name = "honesty", .title = "View factors: true errors against reported ones"};
-  result.paragraphs = {broken_sentence(study), failure_sentence(study), method_sentence(study, size),
-                       open_sentence(study), level_sentence(study)};
+  result.paragraphs = {broken_sentence(study), failure_sentence(study)};
   std::erase(result.paragraphs, "");
   result.tables = {honesty_table(study.rows)};
   result.figures = {error_figure(study)};

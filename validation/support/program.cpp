@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <iostream>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
@@ -28,6 +29,9 @@ std::string quoted(const std::string& word) {
 ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments) {
   std::string command = quoted(program);
   for (const std::string& argument : arguments) command += ' ' + quoted(argument);
+  const TemporaryDirectory folder(memory_folder());
+  const std::filesystem::path errors = folder.path() / "stderr";
+  command += " 2> " + quoted(errors.string());
   std::FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("cannot run " + command);
   ProgramRun run;
@@ -36,6 +40,8 @@ ProgramRun run_program(const std::string& program, const std::vector<std::string
     run.output.append(buffer.data(), count);
   const int status = pclose(pipe);
   if (WIFEXITED(status)) run.exit_code = WEXITSTATUS(status);
+  run.error = text_of(errors);
+  std::cerr << run.error;
   return run;
 }
 

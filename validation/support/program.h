@@ -15,10 +15,14 @@ namespace exactff::validation {
 struct ProgramRun {
   std::string output;  // standard output
   int exit_code = -1;
+  std::string error;  // standard error, which the test repeats on its own
 };
-
-// Standard error goes to the standard error of the test.
 [[nodiscard]] ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments);
+#ifdef EXACTFF_PROGRAM
+[[nodiscard]] inline ProgramRun run_exactff(const std::vector<std::string>& arguments) {
+  return run_program(EXACTFF_PROGRAM, arguments);
+}
+#endif
 
 // The running program. Its standard error goes to a file, its standard output is discarded, and `prepare` is called in
 // the new process first. The owner must wait for it.

@@ -149,24 +149,6 @@ class TruthFiles(Case):
         self.check_places(read.array, rows[::3])
         self.same(numpy.load(self.path("t.npy")), floats(rows, "exact").reshape(-1, 3))
 
-    def test_numpy_has_a_row_per_receiver_and_a_column_per_source(self):
-        rows = self.truth(".vtp", *self.GRID)
-        array = numpy.load(self.path("t.npy"), allow_pickle=False)
-        self.assertEqual(array.shape, (len(rows), 1))
-        self.assertTrue(array.flags.c_contiguous)
-        self.same(array[:, 0], floats(rows, "exact"))
-        rows = self.truth(".vtp", CORNELL, "--on", "floor", "--grid", "1x1", "--source", "light,back")
-        self.same(numpy.load(self.path("t.npy")), floats(rows, "exact").reshape(1, 2))
-
-    def test_words_are_those_of_the_csv(self):
-        rows = self.truth(".vtp", *self.GRID)
-        read = Read(self.path("t.vtp"))
-        self.assertEqual(read.array("id"), [row["receiver"] for row in rows])
-        self.assertEqual(read.array("on"), [row["on"] for row in rows])
-        self.assertIn("scene: cornell_box.obj", "\n".join(read.of_file("about")))
-        self.assertEqual([f"r{r}c{c}" for r, c in zip(read.array("row"), read.array("column"))],
-                         [row["receiver"].split("/")[-1] for row in rows])
-
     def test_receivers_without_cells_are_vertices(self):
         for flag in "--vertices", "--centres":
             for extension in ".vtp", ".vtu":
@@ -203,19 +185,6 @@ class TruthFiles(Case):
             fan = [numpy.cross(corners[k] - corners[0], corners[k + 1] - corners[0]) for k in range(1, len(corners) - 1)]
             area += numpy.linalg.norm(sum(fan)) / 2
         self.assertAlmostEqual(area, 1.9207e6, delta=50)  # as exactff info says
-
-    def test_a_merged_file_gives_the_same_arrays(self):
-        self.truth(".vtp", CORNELL, "--on", "floor", "--grid", "20x20", "--source", "light,back")
-        for k in 1, 2, 3:
-            self.run_program("truth", CORNELL, "--on", "floor", "--grid", "20x20", "--source", "light,back", "--shard",
-                             f"{k}/3", "-o", self.path(f"s{k}.csv"))
-        self.run_program("merge", *(self.path(f"s{k}.csv") for k in (3, 1, 2)), "-o", self.path("m.csv"), "--npy",
-                         self.path("m.npy"))
-        self.run_program("truth", CORNELL, "--on", "floor", "--grid", "20x20", "--source", "light,back", "--resume",
-                         "-o", self.path("m.csv"), "--vtk", self.path("m.vtp"))
-        for name in "csv", "npy", "vtp":
-            self.assertEqual(self.path("m." + name).read_bytes(), self.path("t." + name).read_bytes())
-
 
 class CompareFiles(Case):
     def compare(self, file, *words):
@@ -264,7 +233,6 @@ class CompareFiles(Case):
         mesh = meshio.read(self.path("map.vtu"))
         for name in read.names:
             self.same(mesh.cell_data[name][0], read.array(name))
-
 
 class OddFiles(Case):
     SQUARE = "v {0} 0 0\nv {1} 0 0\nv {1} 0 1\nv {0} 0 1\n"
@@ -347,13 +315,6 @@ class MatrixFiles(Case):
         except ImportError:
             return
         self.same(scipy.sparse.load_npz(self.path("m.npz")).toarray(), dense)
-
-    def test_names_in_any_letters(self):
-        self.path("odd.obj").write_bytes("v 0 0 0\nv 1 0 0\nv 0 1 0\ng \u00e9\u4e2d\U0001d11e\nf 1 2 3\n".encode())
-        self.run_program("matrix", self.path("odd.obj"), "--npz", self.path("m.npz"))
-        with numpy.load(self.path("m.npz")) as file:
-            self.assertEqual(list(file["from"]), ["\u00e9\u4e2d\U0001d11e"])
-            self.assertEqual(len(file["data"]), 0)
 
     def test_a_row_on_the_scene(self):
         rows = self.matrix("--from", "srf-1", "--vtk", self.path("row.vtp"))

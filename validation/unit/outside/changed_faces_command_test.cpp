@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -29,23 +28,11 @@ class ChangedFaces : public testing::Test {
     room_ = directory_.write("room.obj", kRoom);
   }
 
-  struct Run {
-    int exit_code = 0;
-    std::string output, error;
+  struct Run : validation::ProgramRun {
     bool said(const std::string& part) const { return error.find(part) != std::string::npos; }
     bool printed(const std::string& part) const { return output.find(part) != std::string::npos; }
   };
-  // Twice, because a run shows either standard output or standard error to the test.
-  Run run(const std::vector<std::string>& arguments) const {
-    const validation::RunningProgram program(EXACTFF_PROGRAM, arguments, directory_.path() / "stderr",
-                                             [] { ::setenv("PATH", "/nonexistent", 1); });
-    Run result;
-    result.exit_code = program.wait();
-    result.error = program.error();
-    if (arguments.front() == "info" || arguments.front() == "point")
-      result.output = validation::run_program(EXACTFF_PROGRAM, arguments).output;
-    return result;
-  }
+  static Run run(const std::vector<std::string>& arguments) { return {validation::run_exactff(arguments)}; }
   Run with(std::vector<std::string> arguments, const std::vector<std::string>& more) const {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
@@ -63,6 +50,7 @@ class ChangedFaces : public testing::Test {
                 more);
   }
 
+  const validation::EnvironmentVariable without_gnuplot_{"PATH", "/nonexistent"};
   const validation::TemporaryDirectory directory_;
   std::string room_;
   const fs::path truth_ = directory_.path() / "truth.csv", out_ = directory_.path() / "out";
@@ -90,25 +78,6 @@ TEST_F(ChangedFaces, UnknownNamesAreRefused) {
   }
 }
 
-TEST_F(ChangedFaces, PointSaysWhatToDo) {
-  const Run dark = point({"--transparent", "pane"});
-  EXPECT_TRUE(dark.said("the receiver is behind every face of 'lamp'")) << dark.error;
-  EXPECT_TRUE(dark.said("turn it round with --flip lamp\n")) << dark.error;
-  EXPECT_FALSE(dark.said("lets light through")) << dark.error;
-  EXPECT_TRUE(point({"--flip", "lamp"}).said("give --transparent pane\n"));
-}
-
-TEST_F(ChangedFaces, AreInTheHeaderOfATruthFile) {
-  EXPECT_EQ(truth(kBoth).exit_code, 0);
-  const std::string text = text_of(truth_);
-  EXPECT_NE(text.find("\"flipped\":[\"lamp\"],\"transparent\":[\"pane\"],\"receivers\":"), std::string::npos)
-      << text.substr(0, 600);
-  EXPECT_EQ(text.find(",zero\n"), std::string::npos);
-  EXPECT_EQ(truth({}).exit_code, 0);
-  EXPECT_EQ(text_of(truth_).find("flipped"), std::string::npos);
-  EXPECT_EQ(text_of(truth_).find("transparent"), std::string::npos);
-}
-
 TEST_F(ChangedFaces, BelongToTheRequestOfATruthFile) {
   EXPECT_EQ(truth(kBoth).exit_code, 0);
   const std::string whole = text_of(truth_);
@@ -123,66 +92,6 @@ TEST_F(ChangedFaces, BelongToTheRequestOfATruthFile) {
     EXPECT_TRUE(refused.said("belongs to a different request")) << refused.error;
   }
   EXPECT_EQ(text_of(truth_), whole);
-}
-
-TEST_F(ChangedFaces, OfShardsMustAgree) {
-  const auto shard = [&](const char* which, const std::vector<std::string>& flags) {
-    const fs::path file = directory_.path() / (std::string(1, which[0]) + ".csv");
-    EXPECT_EQ(with({"truth", room_, "--on", "floor", "--grid", "8x16", "--force", "-o", file, "--shard", which}, flags)
-                  .exit_code,
-              0);
-    return file.string();
-  };
-  const std::string one = shard("1/2", kBoth);
-  const std::string other = shard("2/2", {"--flip", "lamp"});
-  const fs::path merged = directory_.path() / "merged.csv";
-  const Run refused = run({"merge", one, other, "-o", merged});
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_TRUE(refused.said("belongs to a different request")) << refused.error;
-  EXPECT_EQ(run({"merge", one, shard("2/2", kBoth), "-o", merged}).exit_code, 0);
-  EXPECT_EQ(truth(kBoth).exit_code, 0);
-  EXPECT_EQ(text_of(merged), text_of(truth_));
-  EXPECT_EQ(run({"check", truth_, merged, "--max-abs", "0"}).exit_code, 0);
-}
-
-TEST_F(ChangedFaces, AreInTheTablesAndTheReportOfCompare) {
-  const Run run = compare(kBoth);
-  EXPECT_EQ(run.exit_code, 0) << run.error;
-  EXPECT_FALSE(run.said("gives 0")) << run.error;
-  const std::string table = text_of(out_ / "exact.csv");
-  EXPECT_NE(table.find("\n# flipped: lamp\n# transparent: pane\n# receivers: "), std::string::npos)
-      << table.substr(0, 600);
-  const std::string report = text_of(out_ / "report.html");
-  EXPECT_NE(report.find("flipped: lamp; transparent: pane"), std::string::npos);
-  EXPECT_NE(report.find("--flip lamp --transparent pane --on floor"), std::string::npos) << "the command line";
-}
-
-TEST_F(ChangedFaces, AreFlagsOfASceneInAStudy) {
-  const std::string line =
-      "scene room.obj --on floor --grid 3x3 --no-methods --eps-b .1 --rays 1 --seeds 1 --pattern jittered --variant "
-      "mended --title ";
-  const std::string study =
-      directory_.write("a.study", line + "A\n" + line + "B --flip lamp --transparent pane\n").string();
-  const Run both = run({"compare", study, "-o", out_});
-  EXPECT_EQ(both.exit_code, 0) << both.error;
-  EXPECT_EQ(text_of(out_ / "a_exact.csv").find("# flipped"), std::string::npos);
-  EXPECT_NE(text_of(out_ / "b_exact.csv").find("# flipped: lamp\n# transparent: pane\n"), std::string::npos);
-  EXPECT_TRUE(both.said("warning: A: source 'lamp' gives 0 at all 9 receivers")) << both.error;
-  EXPECT_FALSE(both.said("B: source")) << both.error;
-  EXPECT_TRUE(both.said("give --transparent pane\n")) << both.error;
-}
-
-TEST_F(ChangedFaces, TruthAndCompareSayWhyEverythingIsDark) {
-  const std::string behind =
-      "warning: source 'lamp' gives 0 at all 128 receivers: they are behind the source (a source emits only from its "
-      "front); if the other side of 'lamp' is meant, turn it round with --flip lamp\n";
-  EXPECT_TRUE(truth({}).said(behind)) << truth({}).error;
-  const Run turned = truth({"--flip", "lamp,floor", "--transparent", "pane"});
-  EXPECT_TRUE(turned.said("they look away from the source")) << turned.error;
-  EXPECT_TRUE(turned.said("leave out --flip for 'floor'\n")) << turned.error;
-  const Run compared = compare({"--transparent", "pane"});
-  EXPECT_TRUE(compared.said("source 'lamp' gives 0 at all 9 receivers: they are behind the source")) << compared.error;
-  EXPECT_FALSE(truth({"--flip", "lamp"}).said("gives 0")) << "the pane hides it: no slip that can be told";
 }
 
 TEST_F(ChangedFaces, InfoShowsFindingsAndProposesWhatWorks) {

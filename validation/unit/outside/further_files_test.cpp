@@ -1,9 +1,7 @@
 // --npy and --vtk of truth, merge and compare: what is written, resumed, interrupted and refused.
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -128,25 +126,6 @@ TEST_F(FurtherFiles, OfMergedShardsAreThoseOfOneRun) {
   EXPECT_FALSE(fs::exists(path("c.csv")));
 }
 
-TEST_F(FurtherFiles, AreWholeOrAbsentWhateverMomentASignalComes) {
-  for (int milliseconds = 5; milliseconds < 400; milliseconds *= 2) {
-    const validation::RunningProgram running(
-        EXACTFF_PROGRAM,
-        truth({"-o", path("t.csv"), "--npz", path("t.npz"), "--npy", path("t.npy"), "--vtk", path("t.vtp"), "--resume"},
-              "60x60"),
-        path("stderr"));
-    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
-    running.send(SIGINT);
-    const int code = running.wait();
-    EXPECT_TRUE(code == 0 || code == 128 + SIGINT) << running.error();
-    for (const auto& entry : fs::directory_iterator(directory_.path())) {
-      EXPECT_NE(entry.path().extension(), ".whole") << milliseconds;
-    }
-  }
-  ASSERT_EQ(run(truth({"-o", path("t.csv"), "--npy", path("t.npy"), "--vtk", path("t.vtp"), "--resume"}, "60x60")), 0);
-  EXPECT_EQ(doubles("t.npy").size(), 3600U);
-}
-
 // Of a small truth file with the sources s and t.
 std::string small_head() {
   table::Head head;
@@ -172,24 +151,6 @@ TEST_F(FurtherFiles, HaveNoNumberWhereAValueIsNotCertified) {
   EXPECT_TRUE(std::isnan(values[0]));
   EXPECT_EQ(std::vector(values.begin() + 1, values.end()), (std::vector<double>{0.25, 0.0, 0.0}));
   EXPECT_NE(text_of(path("t.npy")).find("'shape': (2, 2), }"), std::string::npos);
-}
-
-TEST_F(FurtherFiles, AreRefusedForFilesThatHoldOtherRows) {
-  for (const char* rows : {"a,s,0,0,0,0,0,0,zero\na,t,0,0,0,0,0,0,zero\nb,s,0,0,0,0,0,0,zero\n",  // one is missing
-                           "a,s,0,0,0,0,0,0,zero\na,t,0,0,0,0,0,0,zero\nb,u,0,0,0,0,0,0,zero\nb,s,0,0,0,0,0,0,zero\n",
-                           "a,s,0,0,0,0,0,0\n", "a,s,x,0,0,0,0,0,zero\n", "a,s,0,0,0,0,0,0,zer\n", ""}) {
-    const fs::path file = directory_.write("t.csv", kSmallHead + rows);
-    EXPECT_THROW(truth::write_npy(file, path("t.npy")), InputError) << rows;
-    EXPECT_THROW(truth::write_npz(file, path("t.npy")), InputError) << rows;
-    EXPECT_FALSE(fs::exists(path("t.npy"))) << rows;
-  }
-}
-
-TEST_F(FurtherFiles, AreRefusedIfColumnsOfTheHeadAreMissing) {
-  std::string text = text_of(directory_.write("t.csv", kSmallHead + "a,s,0,0,0,0,0,0,zero\na,t,0,0,0,0,0,0,zero\n"));
-  text.replace(text.rfind("receiver,"), 8, "id");
-  (void)directory_.write("t.csv", text);
-  EXPECT_THROW(truth::write_npy(path("t.csv"), path("t.npy")), InputError);
 }
 
 }  // namespace

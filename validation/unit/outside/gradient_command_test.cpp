@@ -1,7 +1,6 @@
 // The gradient as scripts use it: exactff point --gradient and exactff truth --gradient.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -67,15 +66,6 @@ TEST_F(GradientCommand, PlainTellsProvedZerosFromKinks) {
   EXPECT_EQ(kink.output, split_at(point("-3", "0.5", {"--plain"}).output, '\n').front() + "\tkink\n");
 }
 
-TEST_F(GradientCommand, TextNamesTheReasonOfAKink) {
-  const ProgramRun smooth = point("0.375", "0.25", {"--gradient"});
-  EXPECT_NE(smooth.output.find("  dF/dx        "), std::string::npos) << smooth.output;
-  EXPECT_NE(smooth.output.find("  Vz           "), std::string::npos) << smooth.output;
-  const ProgramRun kink = point("-3", "0.5", {"--gradient", "--along", "0", "1", "0"});
-  EXPECT_NE(kink.output.find("none: a kink, since a face is seen edge-on (sheet)"), std::string::npos) << kink.output;
-  EXPECT_NE(kink.output.find("  along        "), std::string::npos) << kink.output;
-}
-
 TEST_F(GradientCommand, JsonHasBallsAndArcs) {
   const auto json = nlohmann::json::parse(point("0.375", "0.25", {"--gradient", "--json", "--explain"}).output);
   const auto& gradient = json.at("sources").at(0).at("gradient");
@@ -87,17 +77,6 @@ TEST_F(GradientCommand, JsonHasBallsAndArcs) {
   const auto kink = nlohmann::json::parse(point("-3", "0.5", {"--gradient", "--json"}).output).at("sources").at(0);
   EXPECT_TRUE(kink.at("gradient").at("position").at(0).at("value").is_null());
   EXPECT_EQ(kink.at("gradient").at("kink").at("faces").at(0), "sheet");
-}
-
-TEST_F(GradientCommand, ExplainListsTheArcs) {
-  const ProgramRun run = point("0.375", "0.25", {"--gradient", "--explain"});
-  EXPECT_NE(run.output.find("arcs of the visible boundary that move: 8"), std::string::npos) << run.output;
-  EXPECT_NE(run.output.find("    the line through ("), std::string::npos) << run.output;
-}
-
-TEST_F(GradientCommand, AlongAndVerticesNeedGradient) {
-  EXPECT_EQ(point("0", "0", {"--along", "1", "0", "0"}).exit_code, 2);
-  EXPECT_EQ(point("0", "0", {"--vertices"}).exit_code, 2);
 }
 
 // With the receiver, all vertices that move the view move the other way.
@@ -120,18 +99,6 @@ TEST_F(GradientCommand, VerticesAddUpToTheGradient) {
       << text.output;
   EXPECT_NE(text.output.find("  the source's plane follows (-1, 1, 1) (1, 1, 1) (1, -1, 1)\n"), std::string::npos)
       << text.output;
-}
-
-TEST_F(GradientCommand, VerticesNameWhatEachFaceOfALightFollows) {
-  std::string in_two = kGradientScene;
-  in_two.replace(in_two.find("f 1 2 3 4"), 9, "f 1 2 3\nf 1 3 4");
-  scene = directory.write("in_two.obj", in_two).string();
-  const ProgramRun text = point("0.375", "0.25", {"--gradient", "--vertices"});
-  for (const char* frame : {"(-1, 1, 1) (1, 1, 1) (1, -1, 1)", "(-1, 1, 1) (1, -1, 1) (-1, -1, 1)"}) {
-    EXPECT_NE(text.output.find(std::string("  the plane of a face of the source follows ") + frame + '\n'),
-              std::string::npos)
-        << text.output;
-  }
 }
 
 TEST_F(GradientCommand, TruthHasColumnsThatAreEmptyAtKinks) {
@@ -176,12 +143,6 @@ TEST_F(GradientCommand, CheckComparesAColumnWithoutTheKinks) {
   };
   EXPECT_EQ(check(x), 0);
   EXPECT_EQ(check(std::to_string(std::stod(x) + 1e-3)), 1);
-}
-
-TEST_F(GradientCommand, TruthRefusesTheGradientOfTheSky) {
-  const ProgramRun run = run_program(EXACTFF_PROGRAM, {"truth", scene, "--on", "floor", "--grid", "2x2", "--source",
-                                                       "light,sky", "--gradient", "-o", "-"});
-  EXPECT_EQ(run.exit_code, 2);
 }
 
 }  // namespace

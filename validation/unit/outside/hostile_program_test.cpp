@@ -6,7 +6,6 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdio>
@@ -35,25 +34,6 @@ TEST_F(HostileProgram, AFullDiskLeavesTheJournalAlone) {
     EXPECT_NE(run.error().find("result.part; to continue, run the same command with --resume"), std::string::npos);
     expect_only_a_journal(place_ / "result");
   }
-}
-
-TEST_F(HostileProgram, ADiskFullFromTheStartIsLeftAsItWas) {
-  const Running run = start(comparison(place_ / "new" / "result"), [] { limit(RLIMIT_FSIZE, 10); });
-  EXPECT_EQ(run.wait(), 2);
-  expect_nothing_in_place();
-}
-
-TEST_F(HostileProgram, FoldersOnTheWayAreMade) {
-  const Running run = start(comparison(place_ / "new" / "and" / "result"));
-  EXPECT_EQ(run.wait(), 0) << run.error();
-  EXPECT_EQ(names_in(place_ / "new" / "and"), std::set<std::string>{"result"});
-}
-
-TEST_F(HostileProgram, AFullDiskLeavesNoPicture) {
-  const Running run = start(point({"--svg", place_ / "a.svg"}), [] { limit(RLIMIT_FSIZE, 512); });
-  EXPECT_EQ(run.wait(), 2);
-  EXPECT_NE(run.error().find("a.svg: cannot be written: File too large (nothing was written); "), std::string::npos);
-  expect_nothing_in_place();
 }
 
 void to_a_full_disk() {
@@ -172,45 +152,6 @@ TEST_F(HostileProgram, APictureGoesWhereALinkLeads) {
     EXPECT_TRUE(fs::is_symlink(place_ / "link.svg"));
     EXPECT_GT(fs::file_size(place_ / "target.svg"), 100U);
   }
-}
-
-TEST_F(HostileProgram, SenselessFlagsAreRefused) {
-  const std::vector<std::string> table[] = {
-      {"--grid", "0x0"},  {"--grid", "-1x5"},  {"--grid", "1e9x1e9"}, {"--grid", "1000000000x1000000000"},
-      {"--grid", ""},     {"--grid", "3x4x5"}, {"--rays", "0"},       {"--rays", "2147483647"},
-      {"--eps-b", "nan"}, {"--eps-b", "-1"},   {"--eps-b", "1,,2"},   {"--threads", "0"},
-      {"--source", "x"},  {"--pattern", "?"},
-  };
-  for (const std::vector<std::string>& flags : table) {
-    std::vector<std::string> arguments = comparison(place_ / "result");
-    const auto place = std::find(arguments.begin(), arguments.end(), flags[0]);
-    if (place != arguments.end()) {
-      *(place + 1) = flags[1];
-    } else {
-      arguments.insert(arguments.end(), flags.begin(), flags.end());
-    }
-    const Running run = start(arguments);
-    EXPECT_EQ(run.wait(), 2) << flags[0] << ' ' << flags[1];
-    EXPECT_FALSE(run.error().empty());
-    expect_nothing_in_place();
-  }
-  for (const std::vector<std::string>& flags : std::vector<std::vector<std::string>>{{"--digits", "1000000000"},
-                                                                                     {"--eps-b", "nan"},
-                                                                                     {"--eps-a", "-1"},
-                                                                                     {"--reflectance", "nan"},
-                                                                                     {"--rays", "0"}}) {
-    EXPECT_EQ(start(point(flags)).wait(), 2) << flags[0];
-  }
-}
-
-TEST_F(HostileProgram, AReceiverFarFromItsFaceIsWarnedAbout) {
-  const Running far =
-      start({"point", room_, "--at", "5", "5", "1", "--normal", "0", "0", "1", "--on", "floor", "--source", "light"});
-  EXPECT_EQ(far.wait(), 0);
-  EXPECT_NE(far.error().find("of the size of face 'floor' away from that face"), std::string::npos);
-  const Running near = start(point({"--on", "floor"}));
-  EXPECT_EQ(near.wait(), 0);
-  EXPECT_EQ(near.error(), "");
 }
 
 }  // namespace

@@ -5,11 +5,7 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstdint>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -67,58 +63,6 @@ TEST_F(HostileProgram, ASignalInAPieceOfWorkEndsItInHalfASecond) {
                                     ".part; to continue, run the same command with --resume\n"))
       << run.error();
   EXPECT_FALSE(fs::exists(folder));
-}
-
-// A killed process cannot clean up. The next process does, but leaves the files of a living one alone.
-TEST_F(HostileProgram, WhatAKilledRunLeavesTheNextClears) {
-  const fs::path started = directory_.path() / "started", folder = place_ / "result";
-  const auto gnuplot = with_gnuplot("touch '" + started.string() + "'; exec sleep 3");
-  const auto begin = [&](const std::vector<std::string>& arguments) {
-    fs::remove(started);
-    const Running run = start(arguments, gnuplot);
-    while (!fs::exists(started) && !run.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    return run;
-  };
-  const Running killed = begin(comparison(folder));
-  killed.send(SIGKILL);
-  EXPECT_EQ(killed.wait(), 128 + SIGKILL);
-  EXPECT_EQ(names_in(place_).size(), 2U);  // the journal, the hidden folder
-  const Running stress = begin({"stress", "--family", "crack", "-o", folder});
-  EXPECT_EQ(names_in(place_).size(), 2U);  // the journal, its own hidden folder
-  const Running other = start(resumed(folder), [] { ::setenv("PATH", "/nonexistent", 1); });
-  EXPECT_EQ(other.wait(), 0) << other.error();
-  EXPECT_EQ(names_in(place_).size(), 2U);  // the result, and the hidden folder of the living process
-  stress.send(SIGINT);
-  EXPECT_EQ(stress.wait(), 128 + SIGINT);
-  EXPECT_TRUE(stress.error().starts_with("exactff: interrupted; finished families: 1 of 1, kept in " +
-                                         (place_ / "result.part" / "report.html").string() +
-                                         "; --family runs single ones\n"))
-      << stress.error() << "(what the other run wrote to this file may follow)";
-  EXPECT_EQ(names_in(place_), (std::set<std::string>{"result", "result.part"}));
-}
-
-TEST_F(HostileProgram, ASignalWhileItReadsLeavesNothing) {
-  const fs::path pipe = directory_.path() / "pipe.obj";
-  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  std::vector<std::string> arguments = comparison(place_ / "a" / "result");
-  arguments[1] = pipe;
-  const Running run = start(arguments);
-  std::ofstream writer(pipe);
-  writer << kRoom << std::flush;  // it has started to read, and cannot end while the pipe is open
-  run.send(SIGINT);
-  EXPECT_EQ(run.wait(), 128 + SIGINT);
-  expect_nothing_in_place();
-}
-
-TEST_F(HostileProgram, AnInterruptedRunIsBegunAnewByForce) {
-  const fs::path folder = place_ / "result";
-  EXPECT_EQ(start(comparison(folder), [] { limit(RLIMIT_FSIZE, 2048); }).wait(), 2);
-  std::vector<std::string> arguments = comparison(folder);
-  arguments.emplace_back("--force");
-  const Running anew = start(arguments, [] { ::setenv("PATH", "/nonexistent", 1); });
-  EXPECT_EQ(anew.wait(), 0);
-  EXPECT_EQ(anew.error().find("were reused from"), std::string::npos) << anew.error();
-  EXPECT_EQ(names_in(place_), std::set<std::string>{"result"});
 }
 
 }  // namespace

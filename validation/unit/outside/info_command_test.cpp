@@ -71,12 +71,6 @@ TEST(InfoCommand, JsonRoundTrips) {
   EXPECT_EQ(json["warnings"].size(), 2U);
 }
 
-TEST(InfoCommand, EveryFaceIsAPatchOnRequest) {
-  const Room room;
-  const nlohmann::json json = nlohmann::json::parse(room.info({"--json", "--patches", "faces"}).output);
-  EXPECT_EQ(json["patches"][3]["name"], "bent:2");
-}
-
 TEST(InfoCommand, BadFacesStopItUnlessTheyAreSkipped) {
   const Room room(kBowTie);
   const ProgramRun stopped = room.info();
@@ -85,12 +79,6 @@ TEST(InfoCommand, BadFacesStopItUnlessTheyAreSkipped) {
   const ProgramRun skipped = room.info({"--skip-bad-faces"});
   EXPECT_EQ(skipped.exit_code, 0);
   EXPECT_TRUE(holds(skipped.output, "unusable, left out: bow:1\n")) << skipped.output;
-}
-
-TEST(InfoCommand, HelpShowsAnExample) {
-  const ProgramRun run = run_program(EXACTFF_PROGRAM, {"info", "--help"});
-  EXPECT_EQ(run.exit_code, 0);
-  EXPECT_TRUE(holds(run.output, "exactff info room.obj")) << run.output;
 }
 
 }  // namespace

@@ -16,10 +16,10 @@ struct MisusedFlags : testing::Test {
   const validation::TemporaryDirectory directory;
   const std::string scene = EXACTFF_DATA_DIR "/scenes/cornell_box.obj";
 
-  void expect_refused(const std::vector<std::string>& words, const std::string& message) const {
-    const validation::RunningProgram program(EXACTFF_PROGRAM, words, directory.path() / "error");
-    EXPECT_EQ(program.wait(), 2);
-    EXPECT_EQ(program.error(), "exactff: " + message + '\n');
+  static void expect_refused(const std::vector<std::string>& words, const std::string& message) {
+    const validation::ProgramRun run = validation::run_exactff(words);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(run.error, "exactff: " + message + '\n');
   }
 };
 

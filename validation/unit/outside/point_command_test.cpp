@@ -62,11 +62,6 @@ TEST_F(PointCommand, PlainTellsAProvedZeroFromAnUnderflow) {
   EXPECT_EQ(up({"--source", "s", "--plain"}).output, "0.0\n");
 }
 
-TEST_F(PointCommand, NegativeNumbersAreNumbersAndNotFlags) {
-  EXPECT_EQ(point({"--at", "-.0", "-0", "-0e3", "--normal", "-0", "0", "1e-3", "--source", "light", "--plain"}).output,
-            "0.31466995351879845\n");
-}
-
 TEST_F(PointCommand, DigitsAreCertifiedDecimals) {
   EXPECT_EQ(up({"--source", "plate", "--flip", "plate", "--plain", "--digits", "30"}).exit_code, 0);
   const ProgramRun run = up({"--source", "light", "--plain", "--digits", "30"});

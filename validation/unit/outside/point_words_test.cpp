@@ -13,9 +13,7 @@ namespace exactff {
 namespace {
 
 using validation::holds;
-using validation::RunningProgram;
 using validation::TemporaryDirectory;
-using validation::text_of;
 using Words = std::vector<std::string>;
 
 // A light [-1,1]^2 at z = 1 facing down, a floor, and a plate past the corner of the view of the light: no side of the
@@ -42,23 +40,13 @@ class PointWords : public testing::Test {
     scene_ = directory_.write("a.obj", kScene).string();
   }
 
-  struct Said {
-    std::string output, error;
-    int exit_code = -1;
-  };
-  // At the origin, looking up. Standard output goes through a file.
+  using Said = validation::ProgramRun;
+  // At the origin, looking up.
   Said up(const Words& flags) const { return from(scene_, {"0", "0", "0"}, flags); }
-  Said from(const std::string& scene, const Words& at, const Words& flags) const {
+  static Said from(const std::string& scene, const Words& at, const Words& flags) {
     Words words = {"point", scene, "--at", at[0], at[1], at[2], "--normal", "0", "0", "1"};
     words.insert(words.end(), flags.begin(), flags.end());
-    const std::string out = (directory_.path() / "stdout").string();
-    const RunningProgram run(EXACTFF_PROGRAM, words, directory_.path() / "stderr",
-                             [&] { (void)!std::freopen(out.c_str(), "w", stdout); });
-    Said said;
-    said.exit_code = run.wait();
-    said.output = text_of(out);
-    said.error = run.error();
-    return said;
+    return validation::run_exactff(words);
   }
   nlohmann::json json(Words flags) const {
     flags.emplace_back("--json");
@@ -95,25 +83,6 @@ TEST_F(PointWords, ASourceWithoutEmissionIsNotInTheSumOverEmitters) {
   EXPECT_TRUE(holds(said.output, "over the 1 source that emits)\n  not added         ")) << said.output;
 }
 
-TEST_F(PointWords, ASourceThatEmitsIsNotRemarkedUpon) {
-  const Said said = up({"--source", "light"});
-  EXPECT_FALSE(holds(said.output, "emits"));
-  EXPECT_TRUE(holds(said.output, "(reflectance x Ke of the source x form factor, per channel)\n"));
-  EXPECT_EQ(said.error, "");
-}
-
-TEST_F(PointWords, TheSkyIsLeftToView) {
-  const Said said = up({"--source", "sky"});
-  EXPECT_EQ(said.exit_code, 2);
-  EXPECT_TRUE(holds(said.error, "exactff view prints the sky's form factor as (open)")) << said.error;
-}
-
-TEST_F(PointWords, ASourceNamedTwiceIsRefused) {
-  const Said said = up({"--source", "light,light"});
-  EXPECT_EQ(said.exit_code, 2);
-  EXPECT_TRUE(holds(said.error, "--source: 'light' is named twice")) << said.error;
-}
-
 // --- every patch ---------------------------------------------------------------------------------------------
 
 TEST_F(PointWords, AllIsATableWithTheSumAndWhatIsMissing) {
@@ -133,13 +102,6 @@ TEST_F(PointWords, AllIsATableWithTheSumAndWhatIsMissing) {
   EXPECT_TRUE(holds(said.output, "  (the sum over the 1 patch that emits)\n")) << said.output;
   EXPECT_FALSE(holds(said.output, "source light\n")) << "no block per source";
   EXPECT_NEAR(all["missing_to_1"]["lower"].get<double>() + all["sum"]["upper"].get<double>(), 1.0, 1e-15);
-}
-
-TEST_F(PointWords, OfManyFacesTheTableIsThatOfOneByOne) {
-  const std::string hall = "@emitters:n=400,boxes=4";
-  const Said swept = from(hall, {"3", "4", "1"}, {"--source", "all"});
-  EXPECT_EQ(swept.exit_code, 0) << swept.error;
-  EXPECT_EQ(swept.output, from(hall, {"3", "4", "1"}, {"--source", "all", "--engine", "boolean"}).output);
 }
 
 // The rounded values of the six sides add up to 1 only by luck; the balls enclose it.
@@ -178,12 +140,6 @@ TEST_F(PointWords, AllSaysWhereTheSumCountsSomeOfTheViewTwice) {
                     "  (transparent patches count fully, and so does what is seen through them)"));
 }
 
-TEST_F(PointWords, AllWithExplainShowsTheStagesAndTheTable) {
-  const Said said = up({"--source", "all", "--explain"});
-  EXPECT_TRUE(holds(said.output, "plane of light: "));
-  EXPECT_TRUE(holds(said.output, "missing to 1  "));
-}
-
 // --- outcomes ------------------------------------------------------------------------------------------------
 
 TEST_F(PointWords, AnOutcomeAgreesWithTheExactVisiblePart) {
@@ -196,27 +152,6 @@ TEST_F(PointWords, AnOutcomeAgreesWithTheExactVisiblePart) {
     EXPECT_FALSE(holds(said.output, "partly hidden")) << said.output;
   }
   EXPECT_EQ(json({"--source", "light", "--fraction"})["sources"][0]["planes"][0]["outcome"], "unoccluded");
-}
-
-TEST_F(PointWords, AnOutcomeAgreesWithTheOccludersListedBelowAHorizon) {
-  const Words tilted = {"point", scene_, "--at", "0",        "0",     "0",          "--normal",
-                        "1",     "0",    ".2",   "--source", "light", "--fraction", "--explain"};
-  const std::string output = validation::run_program(EXACTFF_PROGRAM, tilted).output;
-  EXPECT_TRUE(holds(output, "plane of light: unoccluded\n")) << output;
-  EXPECT_TRUE(holds(output, "  visible      0.6  (some of it)\n")) << output;
-  EXPECT_TRUE(holds(output, "occluders that hide a part of it: 0\n")) << output;
-}
-
-TEST_F(PointWords, TheDrawingSaysTheSame) {
-  const std::string file = (directory_.path() / "view.svg").string();
-  EXPECT_EQ(up({"--source", "light", "--svg", file}).exit_code, 0);
-  EXPECT_TRUE(holds(text_of(file), "Plane of light: unoccluded; 1 face in the shaft")) << text_of(file);
-}
-
-TEST_F(PointWords, ExactFractionsArePrinted) {
-  const Said said = up({"--source", "light,floor", "--exact-fraction"});
-  EXPECT_TRUE(holds(said.output, "  exactly      1  of the plane of light\n")) << said.output;
-  EXPECT_TRUE(holds(said.output, "  exactly      0  of the plane of floor\n")) << said.output;
 }
 
 // --- options without effect ----------------------------------------------------------------------------------
@@ -247,35 +182,7 @@ TEST_F(PointWords, WhatPlainDoesNotPrintIsSaid) {
   EXPECT_EQ(up({"--source", "light", "--plain", "--adaptive", "--svg", file}).error, "") << "the drawing shows leaves";
 }
 
-TEST_F(PointWords, WhatAPatternIgnoresIsSaid) {
-  EXPECT_EQ(up({"--source", "light", "--adaptive", "--pattern", "centre", "--rays", "4"}).error,
-            "exactff: warning: --rays has no effect here (the pattern centre casts one ray per leaf)\n");
-  EXPECT_EQ(up({"--source", "light", "--adaptive", "--pattern", "regular", "--seed", "4"}).error,
-            "exactff: warning: --seed has no effect here (the pattern regular uses no random numbers)\n");
-}
-
-TEST_F(PointWords, DigitsAreSignificantDigits) {
-  const std::string help = validation::run_program(EXACTFF_PROGRAM, {"point", "--help"}).output;
-  EXPECT_TRUE(holds(help, "significant digits")) << help;
-  const std::string tiny =
-      directory_.write("tiny.obj", "v 0 1e-3 1\nv 1e-3 1e-3 1\nv 1e-3 0 1\nv 0 0 1\ng s\nf 1 2 3 4\n").string();
-  const std::string digits = from(tiny, {"0", "0", "0"}, {"--source", "s", "--digits", "5", "--plain"}).output;
-  EXPECT_EQ(digits, "3.1831e-7\n");
-}
-
 // --- pipes ---------------------------------------------------------------------------------------------------
-
-TEST_F(PointWords, TheSceneMayComeFromAPipe) {
-  const std::string command = "cd '" + directory_.path().string() +
-                              "' && cat a.obj | '" EXACTFF_PROGRAM
-                              "' point - --at 0 0 0 --normal 0 0 1 --source light --json | cat";
-  const nlohmann::json piped = nlohmann::json::parse(validation::run_program("/bin/sh", {"-c", command}).output);
-  const nlohmann::json direct = json({"--source", "light"});
-  EXPECT_EQ(piped["scene_hash"], direct["scene_hash"]) << "with its materials, beside the current folder";
-  EXPECT_EQ(piped["sources"], direct["sources"]);
-  const std::string broken = "echo 'f 1 2 3' | '" EXACTFF_PROGRAM "' point - --at 0 0 0 --normal 0 0 1 2>&1";
-  EXPECT_TRUE(holds(validation::run_program("/bin/sh", {"-c", broken}).output, "exactff: standard input:1: "));
-}
 
 }  // namespace
 }  // namespace exactff

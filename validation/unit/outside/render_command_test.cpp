@@ -20,10 +20,6 @@ using validation::text_of;
 
 class RenderCommand : public testing::Test {
  protected:
-  struct Ended {
-    int code = -1;
-    std::string error;
-  };
   using Words = std::vector<std::string>;
 
   [[nodiscard]] Words words(const Words& more) const {
@@ -32,11 +28,7 @@ class RenderCommand : public testing::Test {
     if (std::ranges::find(more, "--size") == more.end()) all.insert(all.end(), {"--size", "9x7"});
     return all;
   }
-  [[nodiscard]] Ended render(const Words& more) const {
-    const RunningProgram program(EXACTFF_PROGRAM, words(more), directory_.path() / "error");
-    const int code = program.wait();
-    return {code, program.error()};
-  }
+  [[nodiscard]] validation::ProgramRun render(const Words& more) const { return validation::run_exactff(words(more)); }
   [[nodiscard]] std::string path(const std::string& name) const { return (directory_.path() / name).string(); }
   [[nodiscard]] std::size_t files() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(directory_.path()), fs::directory_iterator()));
@@ -47,31 +39,24 @@ class RenderCommand : public testing::Test {
 };
 
 TEST_F(RenderCommand, WritesEveryFile) {
-  EXPECT_EQ(render({"-o", path("a.png"), "--double", path("a.npy"), "--bounds", path("b.npy")}).code, 0);
+  EXPECT_EQ(render({"-o", path("a.png"), "--double", path("a.npy"), "--bounds", path("b.npy")}).exit_code, 0);
   EXPECT_TRUE(text_of(path("a.png")).starts_with("\x89PNG"));
   EXPECT_NE(text_of(path("a.png")).find("cornell_box.obj"), std::string::npos);
   EXPECT_NE(text_of(path("a.npy")).find("(7, 9, 3)"), std::string::npos);
   EXPECT_NE(text_of(path("b.npy")).find("(2, 7, 9, 3)"), std::string::npos);
-  EXPECT_EQ(render({"-o", path("a.exr"), "--layers"}).code, 0);
+  EXPECT_EQ(render({"-o", path("a.exr"), "--layers"}).exit_code, 0);
   EXPECT_TRUE(text_of(path("a.exr")).starts_with("\x76\x2f\x31\x01"));
   EXPECT_NE(text_of(path("a.exr")).find("id.face"), std::string::npos);
-  EXPECT_EQ(files(), 5U);  // with the file of errors: nothing else is left
+  EXPECT_EQ(files(), 4U);  // nothing else is left
 }
 
 TEST_F(RenderCommand, TheGradientHasItsComponentsInChannels) {
-  EXPECT_EQ(render({"-o", path("a.exr"), "--quantity", "gradient", "--spp", "2"}).code, 0);
+  EXPECT_EQ(render({"-o", path("a.exr"), "--quantity", "gradient", "--spp", "2"}).exit_code, 0);
   for (const char* channel : {"gradient.X", "gradient.Y", "gradient.Z", "kink"}) {
     EXPECT_NE(text_of(path("a.exr")).find(channel), std::string::npos) << channel;
   }
-  EXPECT_EQ(render({"-o", path("b.exr"), "--quantity", "gradient", "--bounds", path("b.npy")}).code, 2);
-  EXPECT_EQ(render({"-o", path("b.exr"), "--quantity", "gradient", "--method", "nettle"}).code, 2);
-}
-
-TEST_F(RenderCommand, AnImageIsReplacedAndIsTheSameForAnyNumberOfThreads) {
-  EXPECT_EQ(render({"-o", path("a.exr"), "--threads", "1"}).code, 0);
-  const std::string first = text_of(path("a.exr"));
-  EXPECT_EQ(render({"-o", path("a.exr"), "--threads", "4", "--resume"}).code, 0);
-  EXPECT_EQ(text_of(path("a.exr")), first);
+  EXPECT_EQ(render({"-o", path("b.exr"), "--quantity", "gradient", "--bounds", path("b.npy")}).exit_code, 2);
+  EXPECT_EQ(render({"-o", path("b.exr"), "--quantity", "gradient", "--method", "nettle"}).exit_code, 2);
 }
 
 TEST_F(RenderCommand, ComparesMethods) {
@@ -80,15 +65,15 @@ TEST_F(RenderCommand, ComparesMethods) {
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_NE(run.output.find("errors: RMS "), std::string::npos) << run.output;
   EXPECT_NE(run.output.find("wrong by over 10 %"), std::string::npos) << run.output;
-  EXPECT_EQ(render({"-o", path("again.png"), "--against", "hemicube:resolution=8", "--strip"}).code, 0);
+  EXPECT_EQ(render({"-o", path("again.png"), "--against", "hemicube:resolution=8", "--strip"}).exit_code, 0);
   EXPECT_EQ(text_of(path("again.png")), text_of(path("d.png")));  // no times
-  EXPECT_EQ(render({"-o", path("e.exr"), "--against", "exact"}).code, 0);
+  EXPECT_EQ(render({"-o", path("e.exr"), "--against", "exact"}).exit_code, 0);
   EXPECT_NE(text_of(path("e.exr")).find("minus exact"), std::string::npos);
 }
 
 // The exact picture itself as that of another program; with one wrong pixel.
 TEST_F(RenderCommand, JudgesThePictureOfAnotherProgram) {
-  ASSERT_EQ(render({"-o", path("a.exr"), "--double", path("a.npy"), "--size", "9x7"}).code, 0);
+  ASSERT_EQ(render({"-o", path("a.exr"), "--double", path("a.npy"), "--size", "9x7"}).exit_code, 0);
   std::vector<double> numbers = files::read_npy(path("a.npy")).values;
   const auto judged = [&](const std::string& file, const std::string& result) {
     const auto run = validation::run_program(EXACTFF_PROGRAM, words({"-o", path(result), "--against", path(file)}));
@@ -106,47 +91,33 @@ TEST_F(RenderCommand, JudgesThePictureOfAnotherProgram) {
   const std::vector<std::size_t> shape{7, 9, 3};
   files::write_npy<double>(path("b.npy"), shape, numbers);
   EXPECT_NE(judged("b.npy", "e.png").find("worst 1;"), std::string::npos);
-  EXPECT_EQ(render({"-o", path("s.png"), "--against", path("b.npy"), "--strip"}).code, 0);
+  EXPECT_EQ(render({"-o", path("s.png"), "--against", path("b.npy"), "--strip"}).exit_code, 0);
 }
 
-TEST_F(RenderCommand, BadInputIsRefusedWithWords) {
-  const auto refused = [&](const Words& more, const std::string& fragment) {
-    const Ended ended = render(more);
-    EXPECT_EQ(ended.code, 2) << fragment;
-    EXPECT_NE(ended.error.find(fragment), std::string::npos) << ended.error;
-  };
-  const std::string image = path("x.png");
-  refused({"-o", path("x.jpg")}, "unknown extension .jpg");
-  refused({"-o", path("nowhere/x.png")}, "cannot be written");
-  refused({"-o", directory_.path().string() + "/.png/"}, "extension");
-  refused({"-o", image, "--eye", "1", "2", "3"}, "--eye is given without --look");
-  refused({"-o", image, "--eye", "1", "2", "3", "--look", "1", "2", "3"}, "are the same");
-  refused({"-o", image, "--eye", "1", "2", "3", "--look", "1", "9", "3", "--up", "0", "1", "0"},
-          "parallel to the line of sight");
-  refused({"-o", image, "--eye", "1", "2", "x", "--look", "1", "9", "3"}, "'x'");
-  refused({"-o", image, "--eye", "1", "2", "--look", "1", "9", "3"}, "--eye takes three numbers");
-  refused({"-o", image, "--fov", "180"}, "angle of view");
-  refused({"-o", image, "--fov", "0"}, "not a positive number");
-  refused({"-o", image, "--size", "12"}, "is not a size");
-  refused({"-o", image, "--size", "0x4"}, "0x4 pixels");
-  refused({"-o", image, "--size", "60000x60000"}, "GB of memory");
-  refused({"-o", image, "--double", path("x.txt")}, "does not end in .npy");
-  refused({"-o", image, "--double", path("x.npy"), "--bounds", path("./x.npy")},
-          "is given for two outputs (--double and --bounds)");
-  refused({"-o", image, "--strip"}, "--strip is given without --against");
-  refused({"-o", image, "--layers"}, "--layers needs an EXR file");
-  refused({"-o", path("x.exr"), "--exposure", "2"}, "not scaled");
-  refused({"-o", path("x.exr"), "--layers", "--spp", "2"}, "several points");
-  refused({"-o", image, "--method", "nothing"}, "nothing");
-  refused({"-o", image, "--source", "floor", "--source", "floor"}, "named twice");
-  refused({"-o", image, "--against", path("none.npy")}, "none.npy");
+TEST_F(RenderCommand, BadInputIsRefused) {
   const std::vector<std::size_t> shape{4, 5, 3};
   files::write_npy<double>(path("a.npy"), shape, std::vector<double>(60));
-  refused({"-o", image, "--against", path("a.npy")},
-          "a.npy: has 5x4 pixels, and the picture 9x7 (each pixel is compared with one of the same place); give --size "
-          "5x4");
-  fs::remove(path("a.npy"));
-  EXPECT_EQ(files(), 1U);  // the file of errors
+  const std::string image = path("x.png"), exr = path("x.exr");
+  for (const auto& [more, told] : std::vector<std::pair<Words, std::string>>{
+           {{"-o", path("x.jpg")}, "unknown extension .jpg"},
+           {{"-o", path("nowhere/x.png")}, "cannot be written"},
+           {{"-o", image, "--eye", "1", "2", "3"}, "--eye is given without --look"},
+           {{"-o", image, "--size", "12"}, "is not a size"},
+           {{"-o", image, "--size", "60000x60000"}, "GB of memory"},
+           {{"-o", image, "--double", path("x.txt")}, "does not end in .npy"},
+           {{"-o", image, "--strip"}, "--strip is given without --against"},
+           {{"-o", image, "--layers"}, "--layers needs an EXR file"},
+           {{"-o", exr, "--exposure", "2"}, "not scaled"},
+           {{"-o", exr, "--layers", "--spp", "2"}, "several points"},
+           {{"-o", image, "--against", path("none.npy")}, "none.npy"},
+           {{"-o", image, "--against", path("a.npy")},
+            "a.npy: has 5x4 pixels, and the picture 9x7 (each pixel is compared with one of the same place); give "
+            "--size 5x4"}}) {
+    const validation::ProgramRun run = render(more);
+    EXPECT_EQ(run.exit_code, 2) << told;
+    EXPECT_NE(run.error.find(told), std::string::npos) << run.error;
+  }
+  EXPECT_EQ(files(), 1U) << "the array";
 }
 
 TEST_F(RenderCommand, ContinuesAfterAnInterruption) {
@@ -161,16 +132,16 @@ TEST_F(RenderCommand, ContinuesAfterAnInterruption) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
   EXPECT_NE(program.error().find("--resume"), std::string::npos);
   EXPECT_FALSE(fs::exists(path("a.exr")));
-  const Ended refused = render(long_run);
-  EXPECT_EQ(refused.code, 2);
+  const validation::ProgramRun refused = render(long_run);
+  EXPECT_EQ(refused.exit_code, 2);
   EXPECT_NE(refused.error.find("finished work of an interrupted run"), std::string::npos) << refused.error;
-  const Ended other = render({"--size", "8x8", "-o", path("a.exr"), "--resume"});
-  EXPECT_EQ(other.code, 2);
+  const validation::ProgramRun other = render({"--size", "8x8", "-o", path("a.exr"), "--resume"});
+  EXPECT_EQ(other.exit_code, 2);
   EXPECT_NE(other.error.find("tiles of another image"), std::string::npos) << other.error;
   Words again = long_run;
   again.emplace_back("--resume");
-  const Ended resumed = render(again);
-  EXPECT_EQ(resumed.code, 0);
+  const validation::ProgramRun resumed = render(again);
+  EXPECT_EQ(resumed.exit_code, 0);
   EXPECT_NE(resumed.error.find("were reused"), std::string::npos);
   EXPECT_TRUE(fs::exists(path("a.exr")));
   EXPECT_FALSE(fs::exists(path("a.exr.part")));

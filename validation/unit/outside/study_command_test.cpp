@@ -9,9 +9,6 @@
 #include <map>
 #include <thread>
 
-#include "flags/comparison.h"
-#include "page/gnuplot.h"
-#include "report/plan.h"
 #include "support/program.h"
 
 namespace exactff {
@@ -47,14 +44,18 @@ class StudyCommand : public testing::Test {
   RunningProgram start(const fs::path& folder, std::vector<std::string> more = {}) const {
     std::vector<std::string> all{"compare", directory_.path() / "tiny.study", "-o", folder};
     all.insert(all.end(), more.begin(), more.end());
-    // Figures take most of the time and are tested elsewhere.
-    return {EXACTFF_PROGRAM, all, directory_.path() / "stderr", [] { ::setenv("PATH", "/nonexistent", 1); }};
+    return {EXACTFF_PROGRAM, all, directory_.path() / "stderr"};
   }
   int run(const fs::path& folder, const std::vector<std::string>& more = {}) const {
-    const RunningProgram program = start(folder, more);
-    const int code = program.wait();
-    error_ = program.error();
-    return code;
+    std::vector<std::string> all{"compare", directory_.path() / "tiny.study", "-o", folder};
+    all.insert(all.end(), more.begin(), more.end());
+    return run(all);
+  }
+  int run(const std::vector<std::string>& all) const {
+    const validation::ProgramRun run = validation::run_exactff(all);
+    output_ = run.output;
+    error_ = run.error;
+    return run.exit_code;
   }
   bool said(const std::string& part) const { return error_.find(part) != std::string::npos; }
 
@@ -68,9 +69,11 @@ class StudyCommand : public testing::Test {
     return found;
   }
 
+  // Figures take most of the time and are tested elsewhere.
+  const validation::EnvironmentVariable without_gnuplot_{"PATH", "/nonexistent"};
   const validation::TemporaryDirectory directory_;
   const fs::path out_ = directory_.path() / "out", journal_ = directory_.path() / "out.part";
-  mutable std::string error_;
+  mutable std::string output_, error_;
 };
 
 TEST_F(StudyCommand, WritesTheTablesOfEverySceneAndOneReport) {
@@ -138,14 +141,8 @@ class NamedMethods : public StudyCommand {
     std::vector<std::string> all = {
         "compare", directory_.path() / "room.obj", "--on", "floor", "--grid", "4x4", "--source", "light", "-o", out_};
     all.insert(all.end(), more.begin(), more.end());
-    const fs::path out = directory_.path() / "stdout";
-    const RunningProgram program(EXACTFF_PROGRAM, all, directory_.path() / "stderr", [&] {
-      ::setenv("PATH", "/nonexistent", 1);
-      (void)!std::freopen(out.c_str(), "w", stdout);
-    });
-    code_ = program.wait();
-    error_ = program.error();
-    return text_of(out);
+    code_ = run(all);
+    return output_;
   }
   mutable int code_ = -1;
 };
@@ -175,49 +172,6 @@ TEST_F(NamedMethods, OneSettingIsComparedWithTheExactValues) {
   EXPECT_EQ(page.find("Every setting of Tampieri’s algorithm"), std::string::npos);
 }
 
-// A logarithmic axis of one value would have no number beside it.
-TEST(LinePlot, OfOnePointHasReadableAxesAndTheMark) {
-  const page::Axes axes{"time", "error", true, true, {}, {{"exact", 40.0}}};
-  const std::string script = page::line_plot(axes, {{"X", {{60.0, 0.02}}, 1}});
-  EXPECT_NE(script.find("set xrange [1e1:1e2]\nif (GPVAL_VERSION >= 6.0) set xtics ('10^{1}' 1e1, '' 2e1 1, "),
-            std::string::npos)
-      << script;
-  EXPECT_NE(script.find(" '10^{2}' 1e2)\nset yrange [1e-2:1e-1]\n"), std::string::npos) << script;
-  EXPECT_NE(script.find(" set ytics ('10^{−2}' 1e-2, '' 2e-2 1, "), std::string::npos) << script;
-  const std::string three_powers = page::line_plot(axes, {{"X", {{60.0, 0.02}, {70.0, 0.2}}, 1}});
-  EXPECT_EQ(three_powers.find("set ytics"), std::string::npos) << three_powers;
-  const std::string two_powers = page::line_plot(axes, {{"X", {{4.0, 0.02}, {256.0, 0.2}}, 1}});  // from 2.7 to 384
-  EXPECT_NE(two_powers.find("set xtics ('10^{0}' 1e0, "), std::string::npos) << two_powers;
-  const std::string wide = page::line_plot(axes, {{"X", {{6.0, 0.02}, {600.0, 0.2}}, 1}});
-  EXPECT_EQ(wide.find("set xrange [1e"), std::string::npos) << wide;
-  EXPECT_EQ(wide.find("set yrange"), std::string::npos) << wide;
-}
-
-TEST_F(NamedMethods, SweepAddsTheSweep) {
-  const std::string said = output({"--method", "wallace", "--sweep", "--rays", "4", "--eps-b", ".1", "--seeds", "1"});
-  EXPECT_EQ(code_, 0) << error_;
-  EXPECT_NE(said.find("Ray sampling at the base setting"), std::string::npos) << said;
-  EXPECT_TRUE(fs::exists(out_ / "summary.csv"));
-  EXPECT_NE(text_of(out_ / "report.html").find(" --method wallace --sweep"), std::string::npos);
-}
-
-TEST_F(NamedMethods, SeveralSettingsAreFirstAndLast) {
-  const std::string said = output({"--method", "hemicube:resolution=16|32|64"});
-  EXPECT_NE(said.find("\nhemicube, resolution 16: RMS error "), std::string::npos) << said;
-  EXPECT_NE(said.find("\nhemicube, resolution 64: RMS error "), std::string::npos) << said;
-  EXPECT_EQ(said.find("\nhemicube, resolution 32: "), std::string::npos) << said;
-}
-
-TEST_F(NamedMethods, AMethodThatShowsNothingIsSaidToBeLeftOut) {
-  std::ofstream(directory_.path() / "room.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 2\nv 1 0 2\nv 1 1 2\n"
-                                                   "g floor\nf 1 2 3\ng light\nf 4 5 6\n";  // it looks up
-  const std::string said = output({"--method", "hemicube:resolution=64"});
-  EXPECT_EQ(code_, 0) << error_;
-  EXPECT_NE(said.find("Left out: method hemicube, resolution 64, because no receiver sees any part of a source."),
-            std::string::npos)
-      << said;
-}
-
 TEST_F(NamedMethods, OptionsWithoutEffectAreRefused) {
   (void)output({"--method", "wallace", "--eps-b", ".1", "--sweep-budget", "1"});
   EXPECT_EQ(code_, 2);
@@ -237,12 +191,6 @@ TEST_F(NamedMethods, OptionsWithoutEffectAreRefused) {
   EXPECT_FALSE(fs::exists(out_));
 }
 
-TEST_F(NamedMethods, ASourceWithoutEmissionIsMentionedOnce) {
-  (void)output({"--method", "wallace"});
-  EXPECT_TRUE(said("note: 'light' emits nothing (Ke 0): as a named source it counts with a radiosity of 1\n"))
-      << error_;
-}
-
 TEST_F(StudyCommand, LeavesScenesOutOfAnAbridgedReportAndSaysSo) {
   EXPECT_EQ(run(out_, {"--abridged"}), 0) << error_;
   EXPECT_TRUE(fs::exists(out_ / "room-a_values.csv"));
@@ -250,13 +198,6 @@ TEST_F(StudyCommand, LeavesScenesOutOfAnAbridgedReportAndSaysSo) {
   const std::string report = text_of(out_ / "report.html");
   EXPECT_NE(report.find("Room B"), std::string::npos);
   EXPECT_NE(report.find("this report is abridged"), std::string::npos);
-}
-
-TEST_F(StudyCommand, HasTheSameValuesForAnyNumberOfThreads) {
-  EXPECT_EQ(run(out_, {"--threads", "1"}), 0) << error_;
-  EXPECT_EQ(run(directory_.path() / "two", {"--threads", "2"}), 0) << error_;
-  EXPECT_EQ(values(out_).size(), 18U);
-  EXPECT_TRUE(values(out_) == values(directory_.path() / "two"));
 }
 
 TEST_F(StudyCommand, InterruptedAndResumedHasTheSameValues) {
@@ -284,16 +225,6 @@ TEST_F(StudyCommand, InterruptedAndResumedHasTheSameValues) {
   EXPECT_TRUE(said("pieces of work were reused from the interrupted run")) << error_;
   EXPECT_FALSE(fs::exists(journal_));
   EXPECT_TRUE(values(out_) == values(directory_.path() / "whole"));
-}
-
-TEST_F(StudyCommand, TwiceAtOnceIsRefusedTheSecondTime) {
-  put(line("Room A", "40x40"));
-  const RunningProgram first = start(out_);
-  while (size_of(journal_) < 5000 && !first.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  EXPECT_EQ(run(out_, {"--resume"}), 2);
-  EXPECT_TRUE(said("another process is working on it")) << error_;
-  first.send(SIGKILL);
-  EXPECT_EQ(first.wait(), 128 + SIGKILL);
 }
 
 TEST_F(StudyCommand, RefusesFlagsOfASceneBesideTheFile) {
@@ -328,53 +259,11 @@ TEST_F(StudyCommand, NamesTheLineThatIsWrong) {
   EXPECT_FALSE(fs::exists(journal_));
 }
 
-TEST_F(StudyCommand, LeavesExperimentsOutOfAbridgedReports) {
-  put(line("Room B", "2x2") + "experiment meshing hemicube-scatter --unless-abridged\n");
-  EXPECT_EQ(run(out_, {"--abridged"}), 0) << error_;
-  const std::string page = text_of(out_ / "report.html");
-  EXPECT_NE(page.find("the experiment meshing"), std::string::npos);
-  EXPECT_EQ(page.find("chapter-meshing"), std::string::npos);
-  EXPECT_FALSE(fs::exists(out_ / "meshing.csv"));
-  EXPECT_FALSE(fs::exists(out_ / "hemicube-scatter.csv"));
-}
-
-TEST_F(StudyCommand, NamesTheNearestExperiment) {
-  EXPECT_EQ(run(out_, {"--experiment", "meshin"}), 2);
-  EXPECT_TRUE(said("there is no experiment 'meshin'")) << error_;
-  EXPECT_TRUE(said("meshing")) << error_;
-}
-
-TEST_F(StudyCommand, HasTheValuesOfTheLibraryCall) {
-  EXPECT_EQ(run(out_), 0) << error_;
-  const fs::path by_library = directory_.path() / "by-library";
-  const validation::EnvironmentVariable without_gnuplot("PATH", "/nonexistent");
-  jobs::Journal journal(jobs::journal_of_folder(by_library), jobs::Existing::kRefuse);
-  const report::Outcome outcome =
-      report::carry_out(flags::read_study_file(directory_.path() / "tiny.study"), by_library, journal);
-  EXPECT_EQ(values(by_library), values(out_));
-  ASSERT_EQ(outcome.scenes.size(), 2U);
-  EXPECT_EQ(outcome.scenes.front().title, "Room A");
-  EXPECT_FALSE(outcome.scenes.front().sentences.empty());
-  // A busy machine may add a note on its speed.
-  const auto names_gnuplot = [](const std::string& note) { return note.find("gnuplot was not found") != note.npos; };
-  EXPECT_EQ(std::ranges::count_if(outcome.notes, names_gnuplot), 1);
-}
-
-TEST_F(StudyCommand, OfNothingButLeftOutScenesIsRefused) {
-  put(line("Room B", "3x3 --unless-abridged"));
-  EXPECT_EQ(run(out_, {"--abridged"}), 2);
-  EXPECT_TRUE(said("every scene of the study is left out")) << error_;
-}
-
 TEST_F(StudyCommand, ExperimentsNeedNoScene) {
   const auto compare = [&](const std::vector<std::string>& more) {
     std::vector<std::string> all{"compare", "-o", out_};
     all.insert(all.end(), more.begin(), more.end());
-    const RunningProgram program{EXACTFF_PROGRAM, all, directory_.path() / "stderr",
-                                 [] { ::setenv("PATH", "/nonexistent", 1); }};
-    const int code = program.wait();
-    error_ = program.error();
-    return code;
+    return run(all);
   };
   EXPECT_EQ(compare({}), 2);
   EXPECT_TRUE(said("SCENE is required")) << error_;
@@ -383,16 +272,6 @@ TEST_F(StudyCommand, ExperimentsNeedNoScene) {
   EXPECT_EQ(compare({"--experiment", "hemicube-scatter", "--abridged"}), 0) << error_;
   EXPECT_TRUE(fs::exists(out_ / "hemicube-scatter.csv"));
   EXPECT_NE(text_of(out_ / "report.html").find("exactff compare --experiment hemicube-scatter"), std::string::npos);
-}
-
-TEST_F(StudyCommand, RunsAnExperimentOnceHoweverOftenItIsNamed) {
-  put("experiment hemicube-scatter hemicube-scatter\n");
-  EXPECT_EQ(run(out_, {"--abridged", "--experiment", "hemicube-scatter"}), 0) << error_;
-  const std::string report = text_of(out_ / "report.html");
-  const std::size_t first = report.find("id=\"chapter-hemicube-scatter\"");
-  ASSERT_NE(first, std::string::npos);
-  EXPECT_EQ(report.find("id=\"chapter-hemicube-scatter\"", first + 1), std::string::npos);
-  EXPECT_EQ(run(out_, {"--abridged", "--force"}), 0) << "an experiment's tables may be replaced\n" << error_;
 }
 
 }  // namespace

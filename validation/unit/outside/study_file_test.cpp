@@ -69,16 +69,6 @@ TEST_F(StudyFileReader, TellsEverythingThatIsWrongWithItsLine) {
   EXPECT_EQ(said.find("a.study:5"), std::string::npos) << said;
 }
 
-TEST_F(StudyFileReader, WithNothingToDoIsRefused) {
-  for (const char* text : {"", "# only words\n", "title A title\n"}) {
-    EXPECT_NE(complaint(text).find("a.study: the study has no scene and no experiment"), std::string::npos) << text;
-  }
-}
-
-TEST_F(StudyFileReader, ThatIsNotThereIsNamed) {
-  EXPECT_THROW((void)flags::parse_study_file(directory_.path() / "none.study"), InputError);
-}
-
 TEST(SplitWords, TakesWhatQuotesHold) {
   const auto split = [](const char* line) { return flags::split_words(line, "f", 1); };
   EXPECT_EQ(split(""), Words{});
@@ -89,14 +79,6 @@ TEST(SplitWords, TakesWhatQuotesHold) {
   EXPECT_EQ(split("it\"'\"s"), Words{"it's"});
   EXPECT_THROW((void)split("a \"b"), InputError);
   EXPECT_THROW((void)split("a 'b\""), InputError);
-}
-
-TEST(StudyFiles, AreToldByTheirNames) {
-  EXPECT_TRUE(flags::is_study_file("a.study"));
-  EXPECT_TRUE(flags::is_study_file("/b/a.b.study"));
-  EXPECT_FALSE(flags::is_study_file("a.obj"));
-  EXPECT_FALSE(flags::is_study_file("study"));
-  EXPECT_FALSE(flags::is_study_file("@teapot"));
 }
 
 }  // namespace

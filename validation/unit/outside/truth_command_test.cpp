@@ -6,8 +6,6 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <thread>
 
 #include "support/program.h"
@@ -59,14 +57,6 @@ class TruthCommand : public testing::Test {
   const fs::path journal_ = directory_.path() / "truth.csv.part";
 };
 
-TEST_F(TruthCommand, BytesDoNotDependOnThreads) {
-  EXPECT_EQ(run(kGrid, file_, {"--threads", "1", "--unoccluded", "--fraction"}).exit_code, 0);
-  EXPECT_EQ(run(kGrid, directory_.path() / "b.csv", {"--threads", "3", "--unoccluded", "--fraction"}).exit_code, 0);
-  EXPECT_GT(fs::file_size(file_), 300'000U);
-  EXPECT_EQ(text_of(file_), text_of(directory_.path() / "b.csv"));
-  EXPECT_FALSE(fs::exists(journal_));
-}
-
 TEST_F(TruthCommand, KilledAgainAndAgainItComesToTheSameBytes) {
   for (int kill = 0; kill < 5; ++kill) {
     const std::uintmax_t before = size_of(journal_);
@@ -115,15 +105,6 @@ TEST_F(TruthCommand, TwoAtOnceAreRefused) {
   first.send(SIGKILL);
   EXPECT_EQ(first.wait(), 128 + SIGKILL);
   EXPECT_EQ(run(kGrid, file_, {"--resume"}).exit_code, 0);  // a dead process holds no lock
-}
-
-TEST_F(TruthCommand, ADiskWithoutRoomForTheHeadOfTheJournalHoldsNothingAfterwards) {
-  const RunningProgram full = start(kGrid, {}, [] {
-    const rlimit bytes{100, 100};
-    ::setrlimit(RLIMIT_FSIZE, &bytes);
-  });
-  EXPECT_EQ(full.wait(), 2);
-  EXPECT_FALSE(fs::exists(journal_));
 }
 
 // The disk is full first for the journal, then for the file that is made from it.
@@ -191,12 +172,6 @@ TEST_F(TruthCommand, SenselessFlagsAreRefused) {
     EXPECT_FALSE(running.error().empty());
     EXPECT_FALSE(fs::exists(file_));
   }
-}
-
-TEST_F(TruthCommand, SlowRowsAreLogged) {
-  const RunningProgram running = start("2x1", {"--slow", "0"});
-  EXPECT_EQ(running.wait(), 0);
-  EXPECT_TRUE(running.error().starts_with("slow: receiver 'r1c1' on 'floor', source 'light' took ")) << running.error();
 }
 
 // Several processes, started together by a launcher that the program does not support, would all do the same work.

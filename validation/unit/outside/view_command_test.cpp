@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -27,12 +26,6 @@ const std::string kTwins =
     "v -9 -9 -1\nv 9 -9 -1\nv 9 9 -1\nv -9 9 -1\n"
     "g light\nf 1 2 3 4\ng plate\nf 5 6 7 8\ng floor\nf 9 10 11 12\ng twin\nf 1 2 3 4\n";
 
-// The same groups in another order. Each has one face.
-std::string with_last_group_first(const std::string& obj) {
-  const std::size_t first = obj.find("g "), last = obj.rfind("g ");
-  return obj.substr(0, first) + obj.substr(last) + obj.substr(first, last - first);
-}
-
 struct ViewCommand : testing::Test {
   TemporaryDirectory directory;
   std::string scene = directory.write("a.obj", kTwins).string();
@@ -45,11 +38,7 @@ struct ViewCommand : testing::Test {
 
   // What it says on stderr.
   [[nodiscard]] std::string complaint(const std::vector<std::string>& at, const std::string& up) const {
-    const validation::RunningProgram program(EXACTFF_PROGRAM,
-                                             {"view", scene, "--at", at[0], at[1], at[2], "--normal", "0", "0", up},
-                                             directory.path() / "errors");
-    (void)program.wait();
-    return program.error();
+    return run_program(EXACTFF_PROGRAM, {"view", scene, "--at", at[0], at[1], at[2], "--normal", "0", "0", up}).error;
   }
 };
 
@@ -88,25 +77,6 @@ TEST_F(ViewCommand, AViewOfNothingGivesAnEmptyPictureAndMesh) {
   EXPECT_EQ(validation::text_of(mesh.string() + ".off"), "OFF\n0 0 0\n");
 }
 
-TEST_F(ViewCommand, PlainGivesThePointCommandsValue) {
-  const ProgramRun point = run_program(EXACTFF_PROGRAM, {"point", scene, "--at", "0", "0", "0", "--normal", "0", "0",
-                                                         "1", "--source", "light", "--plain"});
-  EXPECT_EQ("light\t" + point.output, up({"--plain"}).output.substr(0, point.output.size() + 6));
-}
-
-TEST_F(ViewCommand, TableTellsSharesFromFormFactorsOnlyWhereTheyDiffer) {
-  const std::string stacked = up({}).output;
-  EXPECT_NE(stacked.find("share of the view"), std::string::npos) << stacked;
-  EXPECT_TRUE(std::regex_search(stacked, std::regex("\ntwin +0 +0\\.31466995351879845 +certified, stacked\n")));
-  EXPECT_TRUE(std::regex_search(stacked, std::regex("\nlight +(0\\.31466995351879845) +\\1 +certified\n"))) << stacked;
-  EXPECT_NE(stacked.find("\nstacked: in one plane with the front of another patch, which comes first in the file and "
-                         "has the share of the view; each keeps its full form factor\n"),
-            std::string::npos);
-  const ProgramRun clear = up({"--transparent", "twin"});
-  EXPECT_EQ(clear.output.find("share of the view"), std::string::npos) << clear.output;
-  EXPECT_NE(clear.output.find("(open)"), std::string::npos);
-}
-
 TEST_F(ViewCommand, JsonHasEveryPatchSeenAndTheRest) {
   const nlohmann::json json = nlohmann::json::parse(up({"--json", "--digits", "30"}).output);
   ASSERT_EQ(json["patches"].size(), 2U);
@@ -129,38 +99,6 @@ TEST_F(ViewCommand, CsvHasSharesAndFormFactors) {
   EXPECT_NE(text.find(",certified,0.31466995351879845,no\n"), std::string::npos) << text;
   EXPECT_NE(text.find("\ntwin,0,0,0,zero,0.31466995351879845,yes\n"), std::string::npos) << text;
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 7);
-}
-
-// A thin lamp over a floor: two faces in one plane with opposite fronts. What looks down is seen, whichever comes
-// first.
-TEST_F(ViewCommand, OfALampOfTwoFacesHasItsFrontAndNoBack) {
-  const std::string lamp = EXACTFF_DATA_DIR "/regression/lamp_of_two_faces.obj";
-  const auto from_floor = [&](const std::string& file, const std::vector<std::string>& flags) {
-    std::vector<std::string> arguments = {"view",     file, "--at", ".5", ".5",   "0",
-                                          "--normal", "0",  "0",    "1",  "--on", "floor"};
-    arguments.insert(arguments.end(), flags.begin(), flags.end());
-    return run_program(EXACTFF_PROGRAM, arguments).output;
-  };
-  const std::string lines = "lamp_down\t0.23945647046077354\n(back)\t0\n(open)\t0.7605435295392264\n";
-  EXPECT_EQ(from_floor(lamp, {"--plain"}), lines);
-  EXPECT_EQ(
-      from_floor(directory.write("b.obj", with_last_group_first(validation::text_of(lamp))).string(), {"--plain"}),
-      lines);
-  EXPECT_TRUE(std::regex_search(from_floor(lamp, {}), std::regex("\nlamp_down +0\\.23945647046077354 +certified\n")));
-  const std::string svg = (directory.path() / "lamp.svg").string(), mesh = (directory.path() / "lamp.obj").string();
-  const nlohmann::json json = nlohmann::json::parse(from_floor(lamp, {"--json", "--svg", svg, "--mesh", mesh}));
-  EXPECT_EQ(json["back"]["status"], "zero");
-  EXPECT_EQ(json["regions"].dump(), R"([{"face":"lamp_down","fraction":"1","front":true}])");
-  EXPECT_NE(validation::text_of(svg).find("<g class=\"front\"><title>lamp_down</title>"), std::string::npos);
-  EXPECT_EQ(validation::text_of(svg).find("class=\"back\""), std::string::npos);
-}
-
-TEST_F(ViewCommand, BothEnginesAgree) {
-  EXPECT_EQ(up({"--engine", "both", "--plain"}).output, up({"--plain"}).output);
-  EXPECT_EQ(run_program(EXACTFF_PROGRAM, {"view", EXACTFF_DATA_DIR "/scenes/cornell_box.obj", "--at", "200", "0", "400",
-                                          "--normal", "0", "1", "0", "--on", "floor", "--engine", "both"})
-                .exit_code,
-            0);
 }
 
 TEST_F(ViewCommand, SaysWhatIsWrong) {

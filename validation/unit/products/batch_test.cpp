@@ -104,10 +104,5 @@ TEST_F(Batch, WhatAHookThrowsIsThrownWhenTheThreadsHaveEnded) {
   }
 }
 
-TEST_F(Batch, NoReceiversAreNoWork) {
-  receivers_.clear();
-  EXPECT_TRUE(values({}).empty());
-}
-
 }  // namespace
 }  // namespace exactff

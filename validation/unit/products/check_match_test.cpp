@@ -86,35 +86,6 @@ TEST(MatchByPosition, TakesTheToleranceAsADistance) {
                "mine.csv:2: the truth has no receiver within 0.0049 of (1, 0.003, 0.004) of source 's' (");
 }
 
-TEST(MatchByPosition, TellsThePlacesOfRowsWithoutAMatchAndOnceHowFarTheyAre) {
-  const std::string what = complaint(
-      [] { (void)matched_by_position("x,y,z,source,value\n1,0.25,0,s,2\n0,0,0.5,t,3\n1,0,0,s,1\n", 0.01, false); });
-  EXPECT_HOLDS(what, "mine.csv:2: the truth has no receiver within 0.01 of (1, 0.25, 0) of source 's' (");
-  EXPECT_HOLDS(what, "mine.csv:3: the truth has no receiver within 0.01 of (0, 0, 0.5) of source 't' (");
-  const std::string distance =
-      "mine.csv: 2 rows have no match; the distance to the nearest receiver of the truth is 0.25 to 0.5 (points match "
-      "up "
-      "to --tolerance); check the unit of length and the columns, or use a larger --tolerance";
-  EXPECT_HOLDS(what, distance);
-  EXPECT_EQ(what.find("the distance to the nearest"), what.rfind("the distance to the nearest")) << what;
-  EXPECT_HOLDS(what, "no value for 3 of 4 rows of the truth: receiver 'a' at (0, 0, 0) of source 's', ");
-}
-
-// However many there are.
-TEST(MatchByPosition, TellsTheDistanceOfThousandsOfRowsWithoutAMatch) {
-  std::string mine = "x,y,z,source,value\n";
-  for (int i = 0; i < 3000; ++i) mine += "1,0,3,s,1\n";
-  EXPECT_HOLDS(complaint([&] { (void)matched_by_position(mine, 0.0); }),
-               "mine.csv: 3000 rows have no match; the distance to the nearest receiver of the truth is 3 (");
-}
-
-TEST(MatchByPosition, TellsThatNormalsAreToBlame) {
-  EXPECT_HOLDS(
-      complaint([] { (void)matched_by_position("x,y,z,nx,ny,nz,source,value\n1,0,0,0,0,-1,s,2\n", 0.0); }),
-      "mine.csv: 1 row has no match; the distance to the nearest receiver of the truth is 0 (the normals of such "
-      "receivers differ by more than --normal-tolerance); check the normals");
-}
-
 TEST(MatchByPosition, RefusesAChoice) {
   const std::string what =
       complaint([] { (void)matched_by_position("x,y,z,source,value\n0.25,0,0,s,1\n0,0,0,t,2\n", 0.75); });
@@ -122,11 +93,6 @@ TEST(MatchByPosition, RefusesAChoice) {
                "mine.csv:2: 3 receivers of the truth match: 'a' at a distance of 0.25 and 'c' at a distance of 0.25, "
                "and more (it is not clear which one the value belongs to); use a smaller --tolerance");
   EXPECT_FALSE(holds(what, "mine.csv:3"));
-}
-
-TEST(MatchByPosition, RefusesTwoValuesForOneRow) {
-  EXPECT_HOLDS(complaint([] { (void)matched_by_position("x,y,z,source,value\n1,0,0,s,1\n1.1,0,0,s,2\n", 0.2); }),
-               "receiver 'b' of source 's' already has a value (line 2)");
 }
 
 TEST(MatchByPosition, WorksAtBothEndsOfTheDoubles) {
@@ -149,13 +115,9 @@ TEST(MatchByPosition, FindsWhatASearchOfAllFinds) {
   }
 }
 
-TEST(MatchByPosition, NeedsCoordinatesOfTheTruth) {
-  EXPECT_HOLDS(complaint([] {
-                 (void)match(truth_of("receiver,exact\na,1\n"),
-                             candidate_of("x,y,z,value\n0,0,0,1\n", {}, MatchBy::kPosition),
-                             {.by = MatchBy::kPosition});
-               }),
-               "has no columns x, y and z");
+TEST(MatchByPosition, RefusesTwoValuesForOneRow) {
+  EXPECT_HOLDS(complaint([] { (void)matched_by_position("x,y,z,source,value\n1,0,0,s,1\n1.1,0,0,s,2\n", 0.2); }),
+               "receiver 'b' of source 's' already has a value (line 2)");
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // The machine-readable output of a check, with values and names that may break a parser.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -11,7 +10,6 @@
 #include "page/gnuplot.h"
 #include "support/holds.h"
 #include "support/program.h"
-#include "text/phrases.h"
 #include "unit/products/check_support.h"
 
 namespace exactff::check {
@@ -61,57 +59,11 @@ TEST(JUnit, EscapesNames) {
   EXPECT_FALSE(holds(xml, "\x01") || holds(xml, "\xFF"));
 }
 
-TEST(JUnit, NamesTheSourcesItJudgesApart) {
-  const std::string xml = junit_xml(awkward_report({.max_abs = 1.0, .per_source = true}));
-  EXPECT_HOLDS(xml, "name=\"max-abs, source l&lt;&amp;&gt;&quot;amp\" time=\"0\"/>");
-  EXPECT_HOLDS(xml, " failures=\"0\"");
-}
-
-TEST(JUnit, TellsDoubtsAsOutput) {
-  EXPECT_HOLDS(junit_xml(awkward_report({})), "<system-out>warning: no limit was given: the only check was ");
-  EXPECT_FALSE(holds(junit_xml(awkward_report({.rms = 1.0})), "system-out"));
-}
-
 TEST(GitHubAnnotations, PointToTheWorstRowAndEscapeWhatEndsThem) {
   EXPECT_EQ(
       github_annotations(awkward_report({.max_abs = 0.125})),
       "::error file=c%2Cd%3A50%25.csv,line=9,title=exactff check%3A max-abs::max-abs: 0.25 is above the limit 0.125, "
       "worst at receiver 'a\\x01\\xff\\x0a]]>', source 'l<&>\"amp'%0Aexact 0.25, found 0.5, error 0.25, relative 1\n");
-}
-
-TEST(GitHubAnnotations, OfStatisticsPointToTheWorstRowOfAll) {
-  const std::string text = github_annotations(awkward_report({.rms = 0.125}));
-  EXPECT_TRUE(text.starts_with("::error file=c%2Cd%3A50%25.csv,line=9,title=exactff check%3A rms::rms: 0.17677"))
-      << text;
-  EXPECT_TRUE(
-      text.ends_with(" is above the limit 0.125%0Aworst row: receiver 'a\\x01\\xff\\x0a]]>', source 'l<&>\"amp': "
-                     "exact 0.25, found 0.5, error 0.25, relative 1\n"))
-      << text;
-}
-
-// Of a source that is judged apart, its own worst row.
-TEST(GitHubAnnotations, OfStatisticsOfASourceShowItsRows) {
-  const Truth truth = truth_of("receiver,source,exact\na,s,.5\na,t,.5\n");
-  const std::vector<Measured> values = {{0, 2, 0.75}, {1, 3, 1.0}};
-  const std::string text = github_annotations(judge(truth, values, {.rms = 0.125, .per_source = true}, "mine.csv"));
-  EXPECT_HOLDS(text, "line=2,title=exactff check%3A rms%2C source s::");
-  EXPECT_HOLDS(text, "worst row: receiver 'a', source 's': exact 0.5, found 0.75, error 0.25, relative 0.5\n");
-  EXPECT_HOLDS(text, "worst row: receiver 'a', source 't': exact 0.5, found 1, error 0.5, relative 1\n");
-}
-
-TEST(GitHubAnnotations, AreOneLineEach) {
-  const std::string text = github_annotations(awkward_report({.max_abs = 0.1, .max_rel = 0.1}, std::nan("")));
-  std::size_t lines = 0;
-  for (const char c : text) lines += c == '\n' ? 1 : 0;
-  EXPECT_EQ(lines, 3U) << text;
-  EXPECT_TRUE(text.starts_with("::error file=c%2Cd%3A50%25.csv,line=7,title=exactff check%3A finite::")) << text;
-}
-
-TEST(GitHubAnnotations, WarnOfDoubts) {
-  EXPECT_EQ(github_annotations(awkward_report({})),
-            "::warning file=c%2Cd%3A50%25.csv,title=exactff check::no limit was given: the only check was that all "
-            "values are finite numbers\n");
-  EXPECT_EQ(github_annotations(awkward_report({.rms = 1.0})), "");
 }
 
 TEST(GitHubAnnotations, OfBadInputPointToItsLines) {
@@ -145,13 +97,6 @@ TEST(ErrorHistogram, IsDrawnWithoutComplaint) {
   EXPECT_EQ(plot.message, "");
   for (const char* shown : {"max-abs", "quantile 0.9", "2 rows"}) EXPECT_HOLDS(plot.svg, shown);
   EXPECT_FALSE(holds(plot.svg, "quantile 0.5"));  // a logarithmic axis cannot show this limit
-}
-
-TEST(ShortNumbers, AreFitForFlags) {
-  EXPECT_EQ(text::short_number(0.0), "0");
-  EXPECT_EQ(text::short_number(0.0123456), "0.0123");
-  EXPECT_EQ(text::short_number(1.5e-9), "1.5e-09");
-  EXPECT_EQ(text::short_number(-123456.0), "-1.23e+05");
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "exactff/receiver.h"
-#include "exactff/scene_files.h"
 #include "exactff/slips.h"
 #include "generate/plain_scene.h"
 
@@ -70,14 +69,6 @@ TEST(BuriedParts, AreListedWithTheirAreas) {
     EXPECT_NEAR(one->area, area, 1e-12);
     EXPECT_NEAR(one->share, area / (patch == "room" ? 96.0 : patch == "lower" ? 16.0 : 10.0), 1e-12);
   }
-  EXPECT_EQ(kinds_in(plain), Kinds{});
-}
-
-TEST(BuriedParts, AreNoneWhereNothingTouches) {
-  PlainScene plain;
-  add_floor(plain);
-  add_box(plain, "box", {0, 0, 1}, {1, 1, 2});
-  EXPECT_TRUE(buried_parts(generate::build(plain)).empty());
   EXPECT_EQ(kinds_in(plain), Kinds{});
 }
 

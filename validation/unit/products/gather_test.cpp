@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,7 +9,6 @@
 #include "exactff/exr.h"
 #include "exactff/radiosity.h"
 #include "exactff/render.h"
-#include "exactff/scene_files.h"
 #include "exactff/truth.h"
 #include "generate/plain_scene.h"
 #include "support/complaint.h"
@@ -99,16 +97,6 @@ TEST(Gather, OfAFurnaceShowsItsRadiosityInEveryPixelToTheLastDigit) {
   for (std::size_t i = 0; i < picture.values.size(); ++i) ASSERT_EQ(picture.values[i], channel(kGreyB, i % 3)) << i;
 }
 
-// So many patches are found in one sweep; their rounded corners leave no gap.
-TEST(Gather, OfADividedFurnaceIsTheSame) {
-  const DividedScene cells = divided(furnace(), 0.7);
-  ASSERT_GT(cells.cells, 180U);
-  ASSERT_GT(cells.largest_deviation, 0.0);
-  const render::Picture picture = picture_of(cells.scene, same_everywhere(cells.scene, kGreyB), kInFurnace);
-  EXPECT_EQ(picture.not_certified, 0U);
-  for (std::size_t i = 0; i < picture.values.size(); ++i) ASSERT_EQ(picture.values[i], channel(kGreyB, i % 3)) << i;
-}
-
 TEST(Gather, OfEqualRadiositiesIsEmissionAndWhatTheSumOfFormFactorsReflects) {
   const Scene scene = plates();
   const render::Picture shares = render::render({.scene = &scene,
@@ -137,18 +125,6 @@ TEST(Gather, BoundsOfASolvedFurnaceHoldItsRadiosity) {
     ASSERT_GE(picture.upper[i], picture.values[i]);
     ASSERT_LT(picture.upper[i] - picture.lower[i], 0.5 * b);
   }
-}
-
-TEST(Gather, LampsAddUp) {
-  const Scene scene = plates();
-  const std::vector<Rgb> a = {{1, 0.5, 3}, {0.25, 5, 7}, {2, 4, 1}}, b = {{9, 2, 0.5}, {1, 1, 0}, {0.75, 3, 11}};
-  std::vector<Rgb> both;
-  for (std::size_t i = 0; i < a.size(); ++i) both.push_back({a[i].r + b[i].r, a[i].g + b[i].g, a[i].b + b[i].b});
-  const auto of = [&](const std::vector<Rgb>& radiosities) {
-    return picture_of(scene, by_hand(scene, radiosities), kOverFloor, Quantity::kIrradiance).values;
-  };
-  const std::vector<double> one = of(a), other = of(b), sum = of(both);
-  for (std::size_t i = 0; i < sum.size(); ++i) ASSERT_NEAR(one[i] + other[i], sum[i], 1e-14 * sum[i]);
 }
 
 // A patch does not light itself, and each channel has radiosities of its own.
@@ -291,15 +267,6 @@ TEST_F(SolutionFiles, OfOtherScenesOrWithoutBoundsAreRefused) {
   EXPECT_NE(said(scene, replaced(text, whole, unbounded)).find("no bound for blue"), std::string::npos);
 }
 
-TEST_F(SolutionFiles, WithPatchesWithoutAreaAreRefused) {
-  generate::PlainScene plain = plain_plates();
-  plain.add_ring(plain.patch("thread"), {{0, 0, 2}, {1, 0, 2}, {1, 0, 2}});
-  const Scene scene = generate::build(plain);
-  const std::string text = csv_of(scene, solve(scene, {.factors = {.accuracy = 1e-2}}));
-  EXPECT_NE(said(scene, replaced(text, "ceiling,green", "thread,green")).find("of 'thread', which has no area"),
-            std::string::npos);
-}
-
 class AllTheLight : public testing::Test {
  protected:
   [[nodiscard]] int run(std::vector<std::string> flags) const {
@@ -330,19 +297,6 @@ TEST_F(AllTheLight, OfADividedSceneComesFromItsFile) {
       run({"render", EXACTFF_DATA_DIR "/scenes/blinds_room.obj", "--radiosity", file("s.csv"), "-o", file("b.png")}),
       2);
   EXPECT_EQ(run({"render", scene_, "--radiosity", file("s.csv"), "--source", "lamp", "-o", file("b.png")}), 2);
-}
-
-// With radiosities from a file, a dark source does not count with a radiosity of 1.
-TEST_F(AllTheLight, NamesOfSourcesChangeOnlyTheColumns) {
-  ASSERT_EQ(run({"radiosity", scene_, "--accuracy", "1e-2", "-o", file("s.csv")}), 0);
-  const auto said = [&](std::vector<std::string> flags) {
-    flags.insert(flags.begin(), {"truth", scene_, "--on", "floor", "--grid", "2x2", "--source", "ceiling", "--force"});
-    const validation::RunningProgram run(EXACTFF_PROGRAM, flags, folder_.path() / "stderr");
-    EXPECT_EQ(run.wait(), 0) << run.error();
-    return run.error();
-  };
-  EXPECT_NE(said({"-o", file("t.csv")}).find("counts with a radiosity of 1"), std::string::npos);
-  EXPECT_EQ(said({"-o", file("u.csv"), "--radiosity", file("s.csv")}).find("radiosity of 1"), std::string::npos);
 }
 
 TEST_F(AllTheLight, InATruthFileIsTheIrradianceWithBounds) {

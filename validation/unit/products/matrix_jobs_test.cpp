@@ -5,7 +5,6 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -291,17 +290,6 @@ TEST_F(MatrixCommand, ShardsAreMergedAndGiveTheOtherFiles) {
   EXPECT_EQ(run(file_, {"--resume", "--npz", npz}).exit_code, kWide);
   EXPECT_EQ(run(directory_.path() / "alone.csv", {"--npz", alone}).exit_code, kWide);
   EXPECT_EQ(text_of(npz), text_of(alone));
-}
-
-TEST_F(MatrixCommand, SenselessFlagsAreRefused) {
-  const std::string scene = EXACTFF_DATA_DIR "/scenes/cornell_box.obj";
-  EXPECT_EQ(validation::run_program(EXACTFF_PROGRAM, {"matrix", scene, "--resume"}).exit_code, 2);
-  EXPECT_EQ(validation::run_program(EXACTFF_PROGRAM, {"matrix", scene, "--shard", "1/2"}).exit_code, 2);
-  EXPECT_EQ(run(file_, {"--shard", "3/2"}).exit_code, 2);
-  EXPECT_EQ(run(file_, {"--shard", "1/2", "--plain"}).exit_code, 2);
-  EXPECT_EQ(run(file_, {"--resume", "--force"}).exit_code, 2);
-  EXPECT_FALSE(fs::exists(file_));
-  EXPECT_FALSE(fs::exists(journal_));
 }
 
 }  // namespace

@@ -86,22 +86,6 @@ TEST(Matrix, OfABoxWithoutALidIsOpenAsMuchAsTheLidWouldGet) {
   expect_rows_hold_one(scene, matrix, 1e-2);
 }
 
-TEST(Matrix, SeesTheBacksOfABoxTurnedInsideOut) {
-  PlainScene plain = open_box();
-  for (generate::PlainPatch& patch : plain.patches) {
-    if (patch.name != "floor") std::ranges::reverse(patch.faces.front().rings.front());
-  }
-  const Scene scene = generate::build(plain);
-  const Matrix matrix = whole(scene, 1e-3);
-  expect_holds(matrix.back[0], 1.0 - kOpposite, 1.1e-3);
-  expect_holds(matrix.open[0], kOpposite, 1.1e-3);
-  for (std::size_t wall = 1; wall < 5; ++wall) {  // they look away from everything
-    EXPECT_EQ(matrix.back[wall].claim, Claim::kZero);
-    expect_holds(matrix.open[wall], 1.0, 1.1e-3);
-  }
-  expect_rows_hold_one(scene, matrix, 1e-2);
-}
-
 TEST(Matrix, OfAPlateInSpaceIsOpen) {
   for (const double scale : {1.0, 0x1p-500, 0x1p500}) {
     PlainScene plain;
@@ -145,22 +129,6 @@ TEST(Matrix, BacksUnderAFrontInTheirPlaneDoNotCount) {
   EXPECT_NEAR(matrix.back[0].value, large.value - small.value, 2e-6);
   EXPECT_LE(matrix.back[0].upper - matrix.back[0].lower, 1e-6) << "the sum of three factors is accurate, too";
   expect_rows_hold_one(scene, matrix, 1e-2);
-}
-
-// Under a box that stands on the floor without a bottom, the floor sees the backs of its sides and its lid.
-TEST(Matrix, UnderABoxWithoutABottomBacksAreSeen) {
-  PlainScene plain;
-  add(plain, "floor", square(4.0, 0.0));
-  add(plain, "box", square(1.0, 1.0));
-  const double h = 0.5;
-  add(plain, "box", {{-h, -h, 0}, {h, -h, 0}, {h, -h, 1}, {-h, -h, 1}});
-  add(plain, "box", {{h, -h, 0}, {h, h, 0}, {h, h, 1}, {h, -h, 1}});
-  add(plain, "box", {{h, h, 0}, {-h, h, 0}, {-h, h, 1}, {h, h, 1}});
-  add(plain, "box", {{-h, h, 0}, {-h, -h, 0}, {-h, -h, 1}, {-h, h, 1}});
-  const Scene scene = generate::build(plain);
-  const Matrix matrix =
-      compute(scene, std::vector{scene.select("floor")}, {}, {.factors = {.accuracy = 1e-2}, .backs = true});
-  expect_holds(matrix.back[0], 1.0 / 16.0, 1.1e-2);
 }
 
 // No more is left to be seen from elsewhere: its sides, its lid and the floor hide the backs.
@@ -263,20 +231,6 @@ TEST(Matrix, OfAFloorUnderABoxTurnedInsideOutIsOpenBesideTheBox) {
   expect_rows_hold_one(scene, matrix, 1e-2);
 }
 
-// A bent face is its triangles: they see each other, and hide the sky from each other.
-TEST(Matrix, OfABentFaceIsThatOfItsTriangles) {
-  PlainScene bent, cut;
-  add(bent, "valley", {{0, 0, 0}, {1, 0, 0.5}, {1, 1, 0}, {0, 1, 0.5}});
-  add(cut, "valley", {{0, 0, 0}, {1, 0, 0.5}, {1, 1, 0}});
-  add(cut, "valley", {{0, 0, 0}, {1, 1, 0}, {0, 1, 0.5}});
-  const Scene scene = generate::build(bent);
-  const Matrix found = whole(scene, 1e-4), expected = whole(generate::build(cut), 1e-4);
-  EXPECT_GT(found.factors.at(0, 0).lower, 0.05);
-  EXPECT_NEAR(found.factors.at(0, 0).value, expected.factors.at(0, 0).value, 2e-4);
-  EXPECT_NEAR(found.open[0].value, expected.open[0].value, 2e-4);
-  expect_rows_hold_one(scene, found, 1e-3);
-}
-
 // A sheet of two faces stands on another one, which lies on the floor. Cells outside of that may leave out backs, but
 // not with the fronts that a back covered before.
 TEST(Matrix, ASheetThatStandsOnASheetHidesTheSky) {
@@ -351,12 +305,6 @@ TEST(Matrix, SaysWhyRowsNeedNotAddUpToOne) {
   add(apart, "tile", {{1, 0, 0}, {2, 0, 0}, {2, 0.5, 0}, {1, 0.5, 0}});
   const Scene beside = generate::build(apart);
   EXPECT_EQ(reasons_against_one(beside, whole(beside, 0.1)), std::vector<std::string>{});
-}
-
-TEST(Matrix, TheWeakerClaimIsMadeOfASum) {
-  EXPECT_EQ(weaker(Claim::kZero, Claim::kEstimated), Claim::kEstimated);
-  EXPECT_EQ(weaker(Claim::kEstimated, Claim::kZero), Claim::kEstimated);
-  EXPECT_EQ(weaker(Claim::kZero, Claim::kZero), Claim::kZero);
 }
 
 // --- Both directions, both sides ---
@@ -483,27 +431,6 @@ TEST(Matrix, TheTwinOfABentFaceIsItsTrianglesTurnedRound) {
   }
 }
 
-// The twin is cut into the same triangles, so it hides nothing, and meets what met the backs.
-TEST(Matrix, TwoSidesOfABentFaceSeeWhatItsBackSaw) {
-  PlainScene bent;
-  add(bent, "sail", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0}});
-  add(bent, "floor", square(2.0, -1.0));
-  const Scene scene = generate::build(bent), doubled = with_two_sided(scene, std::vector{scene.select("sail")});
-  const Matrix before = whole(scene, 1e-4), after = whole(doubled, 1e-4);
-  EXPECT_GT(before.back[1].lower, 0.01);
-  EXPECT_NEAR(after.factors.at(1, 2).value, before.back[1].value, 2e-4);
-  EXPECT_NEAR(after.factors.at(0, 0).value, before.factors.at(0, 0).value, 2e-4);
-  EXPECT_NEAR(after.back[1].value, 0.0, 2e-4);
-}
-
-TEST(Matrix, TwoSidedRefusesTakenNames) {
-  PlainScene taken;
-  add(taken, "wall", square(1.0, 0.0));
-  add(taken, "wall (back)", square(1.0, 1.0));
-  const Scene with_name = generate::build(taken);
-  EXPECT_THROW((void)with_two_sided(with_name, std::vector{with_name.select("wall")}), InputError);
-}
-
 // --- Files ---
 
 TEST(MatrixFiles, OfView3DAreItsOwn) {
@@ -606,19 +533,6 @@ TEST_F(MatrixFilesOfTheCommand, HoldTheSkyAlone) {
   EXPECT_EQ(run({scene, "--to", "sky", "--vtk", file("row.vtp")}).exit_code, 2);
 }
 
-TEST_F(MatrixFilesOfTheCommand, HaveBothDirectionsAndBothSides) {
-  const validation::ProgramRun both = run({scene_, "--accuracy", "1e-4", "--both-directions"});
-  EXPECT_EQ(both.exit_code, 0);
-  EXPECT_NE(both.output.find("Reciprocity, A_i F_ij = A_j F_ji, of 28 pairs computed both ways: they differ at worst"),
-            std::string::npos)
-      << both.output;
-  const validation::ProgramRun sided =
-      run({scene_, "--accuracy", "1e-3", "--two-sided", "srf-1", "--from", "srf-1 (back)", "--to", "srf-2", "--plain"});
-  EXPECT_EQ(sided.exit_code, 0);
-  EXPECT_EQ(sided.output, "srf-1 (back)\tsrf-2\t0\t0\tzero\tcells\n");
-  EXPECT_EQ(run({scene_, "--two-sided", "srf-9"}).exit_code, 2);
-}
-
 TEST_F(MatrixFilesOfTheCommand, AreWrittenWholeOrNotAtAll) {
   const std::vector<std::string> outputs = {"--npz",        file("m.npz"), "--view3d", file("m.txt"),
                                             "--energyplus", file("m.idf"), "--zone",   "Hall"};
@@ -640,14 +554,6 @@ TEST_F(MatrixFilesOfTheCommand, AreWrittenWholeOrNotAtAll) {
   }
   EXPECT_EQ(run({scene_, "--npz", file("x"), "-o", file("x")}).exit_code, 2);
   EXPECT_EQ(run({scene_, "--zone", "Hall"}).exit_code, 2);
-}
-
-TEST_F(MatrixFilesOfTheCommand, ShowOneRowInParaView) {
-  EXPECT_EQ(run({scene_, "--vtk", file("row.vtp")}).exit_code, 2);
-  EXPECT_EQ(run({scene_, "--from", "srf-1", "--vtk", file("row.obj")}).exit_code, 2);
-  EXPECT_EQ(run({scene_, "--from", "srf-1", "--vtk", file("row.vtp")}).exit_code, 0);
-  const std::string text = validation::text_of(file("row.vtp"));
-  EXPECT_NE(text.find("Name=\"factor\""), std::string::npos);
 }
 
 // A window on a wall counts besides it.
@@ -678,16 +584,6 @@ TEST_F(MatrixFilesOfTheCommand, OfOverlappingFrontsAreWrittenOnlyByForce) {
   EXPECT_EQ(told, "");
 }
 
-// Equal rows are one pair.
-TEST_F(MatrixFilesOfTheCommand, HasARowTwiceIfItIsAskedFor) {
-  const std::string scene = EXACTFF_DATA_DIR "/scenes/slats.obj";
-  const auto twice =
-      run({scene, "--from", "lamp,lamp", "--to", "floor,sky", "--backs", "--accuracy", "0.01", "--plain"});
-  const auto once = run({scene, "--from", "lamp", "--to", "floor,sky", "--backs", "--accuracy", "0.01", "--plain"});
-  EXPECT_EQ(twice.exit_code, 0);
-  EXPECT_EQ(twice.output, once.output + once.output);
-}
-
 // Wider entries are named, with the reason and what would help; a file keeps the reason.
 TEST_F(MatrixFilesOfTheCommand, TellsWhyEntriesAreWider) {
   std::string told;
@@ -710,31 +606,6 @@ TEST_F(MatrixFilesOfTheCommand, TellsWhyEntriesAreWider) {
   for (const ViewFactor& f : read_named(file("m.csv")).entries) EXPECT_EQ(f.limit, Limit::kBudget);
   EXPECT_EQ(command({"floor", "--accuracy", "0.1"}), 0);
   EXPECT_EQ(told, "");
-}
-
-// The floor is 22 times as large as the light, so that what is narrow from there may be wide from here.
-TEST_F(MatrixFilesOfTheCommand, TellsWhichDirectionIsWider) {
-  const auto told = [&](const char* from, const char* to) {
-    const validation::RunningProgram program(EXACTFF_PROGRAM,
-                                             {"matrix", EXACTFF_DATA_DIR "/scenes/cornell_box.obj", "--from", from,
-                                              "--to", to, "--accuracy", "0.02", "--budget", "8", "--certify"},
-                                             folder_.path() / "told");
-    EXPECT_EQ(program.wait(), 3);
-    return program.error();
-  };
-  EXPECT_NE(told("floor", "light").find(" from there) (the limit"), std::string::npos) << told("floor", "light");
-  EXPECT_EQ(told("light", "floor").find("from there"), std::string::npos) << told("light", "floor");
-}
-
-// The bounds of a coarse row may reach beyond 1, which no row does.
-TEST_F(MatrixFilesOfTheCommand, ShowsNoSumAboveOneThatCannotBe) {
-  const std::string room = EXACTFF_DATA_DIR "/scenes/cornell_box.obj";
-  const auto coarse =
-      run({room, "--accuracy", "0.5", "--budget", "1", "--from", "floor", "--backs", "--to", "all,sky"});
-  EXPECT_NE(coarse.output.find(", 1]\n"), std::string::npos) << coarse.output;
-  const auto doubled =
-      run({EXACTFF_DATA_DIR "/regression/window_on_a_wall.obj", "--accuracy", "0.1", "--from", "west"});
-  EXPECT_EQ(doubled.output.find(", 1]\n"), std::string::npos) << doubled.output;
 }
 
 }  // namespace

@@ -76,33 +76,6 @@ TEST(Overlaps, AreaIsThatOfAllPartsTogether) {
   EXPECT_EQ(overlaps[0].apart, 0.0);
 }
 
-TEST(Overlaps, BetweenSelectionsAloneAreFound) {
-  PlainScene plain;
-  add_tile(plain, "floor", 0, 0, 4, 4);
-  add_tile(plain, "carpet", 1, 1, 1, 1);
-  add_tile(plain, "carpet", 3, 3, 2, 1);
-  const Scene scene = generate::build(plain);
-  const std::vector<Selection> first{scene.select("floor"), scene.select("carpet:1")};
-  ASSERT_EQ(overlapping_fronts(scene, first).size(), 1U);
-  EXPECT_NEAR(overlapping_fronts(scene, first)[0].area, 1.0, 1e-12);
-  const std::vector<Selection> alone{scene.select("carpet:1"), scene.select("carpet:2")};
-  EXPECT_TRUE(overlapping_fronts(scene, alone).empty());
-}
-
-TEST(Overlaps, OfManyPairsTheLargestAreNamed) {
-  PlainScene plain;
-  add_tile(plain, "floor", 0, 0, 100, 4);
-  for (int i = 0; i < 20; ++i) {
-    add_tile(plain, "carpet" + std::to_string(i), 4 * i, 1, 1 + 0.1 * i, 1);
-  }
-  const Scene scene = generate::build(plain);
-  const std::string words = words_in(scene, Kind::kOverlappingFronts);
-  EXPECT_EQ(words.find("'carpet19' lies in the plane of 'floor' and overlaps it by 2.9 (area), 'carpet18' lies"), 0U)
-      << words;
-  EXPECT_NE(words.find(" by 2.6 (area) and 16 more pairs: there both"), std::string::npos) << words;
-  EXPECT_NE(words.find("; cut each out of what lies under it, or make it a subsurface"), std::string::npos) << words;
-}
-
 TEST(Overlaps, AreNotBetweenNeighboursThatTouch) {
   PlainScene plain;
   for (int i = 0; i < 9; ++i) {  // corners in the middle of edges, and coordinates that are rounded
@@ -222,6 +195,19 @@ TEST(Overlaps, NoSourceIsTurnedAwayFromItsRoom) {
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_EQ(warnings[0].message().find("--flip"), std::string::npos) << warnings[0].message();
   EXPECT_EQ(advice_to_flip(scene, std::span(&window, 1)), "");
+}
+
+TEST(Overlaps, BetweenSelectionsAloneAreFound) {
+  PlainScene plain;
+  add_tile(plain, "floor", 0, 0, 4, 4);
+  add_tile(plain, "carpet", 1, 1, 1, 1);
+  add_tile(plain, "carpet", 3, 3, 2, 1);
+  const Scene scene = generate::build(plain);
+  const std::vector<Selection> first{scene.select("floor"), scene.select("carpet:1")};
+  ASSERT_EQ(overlapping_fronts(scene, first).size(), 1U);
+  EXPECT_NEAR(overlapping_fronts(scene, first)[0].area, 1.0, 1e-12);
+  const std::vector<Selection> alone{scene.select("carpet:1"), scene.select("carpet:2")};
+  EXPECT_TRUE(overlapping_fronts(scene, alone).empty());
 }
 
 }  // namespace

@@ -101,24 +101,6 @@ TEST(ExrFile, GivesBackEveryBit) {
   EXPECT_EQ(exr::name_of_pixel(image.data, 3), "x-2y6");
 }
 
-TEST(ExrFile, FindsLayersAndSaysWhichThereAre) {
-  Image image{{0, 0, 1, 1}, {0, 0, 1, 1}, {}, {}};
-  for (const char* name : {"R", "G", "B", "A.Position.X", "A.Position.Y", "A.Position.Z", "A.Depth.Z"}) {
-    add_channel(image, name, {1.0F});
-  }
-  const std::string bytes = exr::exr_of(image);
-  const ExrFile file(bytes, "a.exr");
-  EXPECT_EQ(file.find("", "--x")[0].name, "R");
-  EXPECT_EQ(file.find("position", "--x")[2].name, "A.Position.Z");
-  EXPECT_EQ(file.find("A.Depth.Z", "--x").size(), 1U);
-  const auto refused = [&](const std::string& layer) {
-    return refusal(bytes, [&](const ExrFile& one) { (void)one.find(layer, "--x"); });
-  };
-  expect_fragment(refused("Positon"), "did you mean --x 'A.Position'");
-  expect_fragment(refused("Depth"), "neither R, G, B nor X, Y, Z");
-  expect_fragment(refused("Nothing"), "its layers are: B,G,R; A.Depth (Z)");
-}
-
 TEST(ExrFile, RefusesWhatItsBytesCannotHold) {
   Image image{{0, 0, 2, 2}, {0, 0, 2, 2}, {}, {}};
   add_channel(image, "R", {1, 2, 3, 4});

@@ -160,14 +160,6 @@ TEST(Radiosity, SaysThatWidthsAreToBlame) {
   EXPECT_FALSE(std::isnan(solution.channels[0].radiosity[0].value));
 }
 
-TEST(Radiosity, SaysThatLightIsTooBrightForDoubles) {
-  const Solution solution = solution_of(cube({0.5, 0.5, 0.5}, {1.5e308, 1, 1}), 1e-3);
-  EXPECT_NE(solution.channels[0].no_bound.find("Ke is up to 1.5e+308"), std::string::npos)
-      << solution.channels[0].no_bound;
-  EXPECT_NE(solution.channels[0].remedy.find("scale Ke down"), std::string::npos);
-  EXPECT_TRUE(solution.channels[1].is_bounded());
-}
-
 TEST(Radiosity, RefusesPatchesOfSeveralMaterialsByName) {
   SceneBuilder builder("room.obj");
   for (const Vec3& v : {Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}) builder.add_vertex(v);
@@ -192,13 +184,6 @@ TEST(Radiosity, RefusesPatchesOfSeveralMaterialsByName) {
   }
 }
 
-TEST(Radiosity, NeedsTheFactorsBetweenAllPatches) {
-  const Scene scene = generate::build(plates());
-  const std::vector<Selection> patches = patches_of(scene);
-  const matrix::Options options{.factors = {.accuracy = 0.1}, .backs = true, .open = true};
-  EXPECT_THROW((void)solve(scene, matrix::compute(scene, patches, {&patches[0], 1}, options)), std::invalid_argument);
-}
-
 // Nothing is open in a closed room, no back is seen on the inside of a convex one. Both follow without a factor.
 TEST(Radiosity, TellsWhatIsLostWhereOneWayIsProvedToBeNone) {
   const Balance closed = solution_of(cube({0.5, 0.5, 0.5}, {1, 1, 1}), 1e-3).channels[0].balance;
@@ -208,21 +193,6 @@ TEST(Radiosity, TellsWhatIsLostWhereOneWayIsProvedToBeNone) {
   EXPECT_GT(open.open.lower, 1.0);
   EXPECT_LE(open.open.upper - open.open.lower, 1e-4);
   EXPECT_EQ(open.open.upper, open.lost.upper);
-}
-
-// A floor under a roof whose front is above.
-TEST(Radiosity, TellsBacksFromTheSkyOnRequest) {
-  PlainScene shed;
-  add(shed, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {}, {1, 1, 1});
-  add(shed, "roof", {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, {}, {});
-  const Scene scene = generate::build(shed);
-  const Balance together = solve(scene, {.factors = {.accuracy = 1e-4}}).channels[0].balance;
-  EXPECT_NEAR(together.lost.lower, 1.0, 1e-12);
-  EXPECT_EQ(together.back.lower, 0.0);
-  EXPECT_GE(together.back.upper, kOpposite);
-  const Balance apart = solve(scene, {.factors = {.accuracy = 1e-4}, .backs = true}).channels[0].balance;
-  EXPECT_NEAR(apart.back.lower, kOpposite, 1e-3);
-  EXPECT_NEAR(apart.open.upper, 1.0 - kOpposite, 1e-3);
 }
 
 // Only the upper half of the wall is before the floor.
@@ -256,19 +226,6 @@ TEST(Radiosity, TheBalanceTestsTheViewFactors) {
     matrix.open[0].*number -= 1e-3;
   }
   EXPECT_FALSE(is_balanced(solve(scene, matrix)));
-}
-
-TEST(Radiosity, MakesTheWeakestClaimOfItsEntries) {
-  const Scene scene = generate::build(plates());
-  const std::vector<Selection> patches = patches_of(scene);
-  matrix::Matrix matrix =
-      matrix::compute(scene, patches, patches, {.factors = {.accuracy = 1e-2}, .backs = true, .open = true});
-  EXPECT_EQ(solve(scene, matrix).claim, Claim::kEstimated);
-  matrix.open[1].claim = Claim::kEstimated;
-  EXPECT_EQ(solve(scene, matrix).claim, Claim::kEstimated);
-  EXPECT_EQ(solve(scene, matrix).claim_of_balance, Claim::kEstimated);
-  matrix.factors.entries[1].claim = Claim::kEstimated;
-  EXPECT_EQ(solve(scene, matrix).claim, Claim::kEstimated);
 }
 
 // Radiosities far from 1, up to the limits of doubles.
@@ -376,15 +333,6 @@ TEST(RadiosityWidth, ThatTheBudgetDoesNotAllowIsNotClaimed) {
   EXPECT_THROW((void)solve(scene, {.width = 0.0}), InputError);
 }
 
-// With work / width: 9 -> 3 costs 3 times 1; nothing is gained from the other.
-TEST(RadiosityWidth, SharesAreThoseOfTheLeastWork) {
-  EXPECT_EQ(shares_left({{9.0, 1.0}, {1.0, 4.0}}, 4.0), (Numbers{1.0 / 3.0, 1.0}));
-  EXPECT_EQ(shares_left({{9.0, 1.0}, {1.0, 4.0}}, 10.0), (Numbers{1.0, 1.0}));
-  const Numbers both = shares_left({{9.0, 1.0}, {1.0, 1.0}}, 1.0);
-  EXPECT_NEAR(9.0 * both[0], 0.75, 1e-15);
-  EXPECT_NEAR(1.0 * both[1], 0.25, 1e-15);
-}
-
 // --- The command ---
 
 class RadiosityCommand : public testing::Test {
@@ -447,54 +395,6 @@ TEST_F(RadiosityCommand, WithoutABoundHasTheExitCodeThree) {
   EXPECT_TRUE(json["channels"]["red"].contains("no_bound"));
 }
 
-TEST_F(RadiosityCommand, WritesColoursForParaView) {
-  const std::string scene = write(plates());
-  EXPECT_EQ(run(scene, {"--vtk", file("b.obj")}).exit_code, 2);
-  EXPECT_EQ(run(scene, {"--vtk", file("b.vtp")}).exit_code, 0);
-  const std::string text = validation::text_of(file("b.vtp"));
-  for (const char* name : {"radiosity", "lower", "upper", "irradiance"}) {
-    EXPECT_NE(text.find("Name=\"" + std::string(name) + "\" NumberOfComponents=\"3\""), std::string::npos) << name;
-  }
-}
-
-// The two numbers of each "[lower, upper]" in the line below the heading, by column.
-std::vector<std::pair<double, double>> balance_of(const std::string& output) {
-  std::istringstream lines(output.substr(output.find("Where the light goes")));
-  std::string line;
-  for (int i = 0; i < 3; ++i) std::getline(lines, line);
-  std::vector<std::pair<double, double>> parts;
-  std::istringstream cells(line);
-  for (std::string cell; cells >> cell;) {
-    const bool is_interval = cell.front() == '[';
-    const double lower = std::stod(cell.substr(is_interval ? 1 : 0));
-    if (is_interval) cells >> cell;
-    parts.emplace_back(lower, std::stod(cell));
-  }
-  return parts;
-}
-
-// Bounds that are wider than what is emitted are clipped.
-TEST_F(RadiosityCommand, PrintsABalanceThatIsPossible) {
-  PlainScene box = cube({0.75, 0.75, 0.75}, {0, 0, 0});
-  box.patches.pop_back();
-  box.materials[0].radiosity = {14, 14, 14};
-  const auto open = run(write(box), {"--accuracy", "0.2"});
-  const auto parts = balance_of(open.output);
-  ASSERT_EQ(parts.size(), 5U) << open.output;
-  EXPECT_EQ(parts[0], std::pair(14.0, 14.0)) << open.output;
-  for (const auto& [lower, upper] : parts) {
-    EXPECT_GE(lower, 0.0) << open.output;
-    EXPECT_LE(lower, upper) << open.output;
-    EXPECT_LE(upper, 14.0) << open.output;
-  }
-  EXPECT_LT(parts[2].first, parts[2].second);
-  const auto closed = run(write(cube({1, 1, 1}, {1, 1, 1})), {});  // nothing bounds its radiosities
-  for (const auto& [lower, upper] : balance_of(closed.output)) {
-    EXPECT_GE(lower, 0.0) << closed.output;
-    EXPECT_LE(upper, 6.0) << closed.output;
-  }
-}
-
 TEST_F(RadiosityCommand, TakesAFinishedMatrixOfTheSameScene) {
   const std::string scene = write(plates());
   const auto command = [](std::vector<std::string> words) {
@@ -513,15 +413,6 @@ TEST_F(RadiosityCommand, TakesAFinishedMatrixOfTheSameScene) {
   EXPECT_EQ(command({"radiosity", scene, "--matrix", file("m.csv"), "--accuracy", "1e-3"}).exit_code, 2);
   EXPECT_EQ(command({"radiosity", scene, "--matrix", file("m.csv"), "--force", "-o", file("m.csv")}).exit_code, 2);
   EXPECT_EQ(command({"radiosity", scene, "--matrix", file("m.csv"), "--csv"}).output, taken.output);
-}
-
-TEST_F(RadiosityCommand, KeepsViewFactorsOnlyUntilItIsDone) {
-  const std::string scene = write(plates());
-  EXPECT_EQ(run(scene, {"-o", file("s.csv")}).exit_code, 0);
-  EXPECT_EQ(validation::text_of(file("s.csv")), run(scene, {"--csv"}).output);
-  EXPECT_FALSE(std::filesystem::exists(file("s.csv.factors")));
-  EXPECT_FALSE(std::filesystem::exists(file("s.csv.factors.part")));
-  EXPECT_EQ(run(scene, {"--resume"}).exit_code, 2);
 }
 
 TEST_F(RadiosityCommand, KeepsACompleteFileAndMakesWhatIsMissingBesideIt) {

@@ -60,13 +60,6 @@ TEST(View, RaysAreTheDocumentedDoubles) {
   EXPECT_EQ(ray.direction.z, (w.z + s * a.z) + r * b.z);
 }
 
-TEST(View, LooksAlongZWithXToTheLeft) {
-  const View view(cornell_camera(), {64, 64});
-  EXPECT_GT(view.ray(0.5, 32).direction.x, 0.0);  // the left of the picture
-  EXPECT_GT(view.ray(32, 0.5).direction.y, 0.0);  // its top
-  EXPECT_EQ(view.ray(32, 32).direction, (Vec3{0, 0, 1}));
-}
-
 TEST(View, ParallelRaysHaveTheHeightOfThePicture) {
   const View view({.eye = {0, 0, 10}, .ortho = 8.0}, {4, 4});
   EXPECT_EQ(view.ray(0.0, 0.0).origin, (Vec3{-4, 4, 10}));
@@ -326,24 +319,6 @@ TEST(DefaultCamera, LooksIntoTheOpenSide) {
   for (int row = 0; row < 16; ++row) EXPECT_FALSE(first_hit(room, view.ray(8, row + 0.5))->back);
 }
 
-// Doubles of the first version. Images by the default camera keep their bytes.
-TEST(DefaultCamera, OfScenesThatAreNoClosedRoomsStaysAsItWas) {
-  const auto expect_camera = [](const Scene& scene, const Vec3& eye, const Vec3& look) {
-    const Camera camera = default_camera(scene, {.up = {0, 1, 0}}, {8, 6});
-    EXPECT_EQ(camera.eye, eye);
-    EXPECT_EQ(camera.look, look);
-    EXPECT_EQ(camera.up, (Vec3{0, 1, 0}));
-    EXPECT_EQ(camera.fov, 40.0);
-  };
-  expect_camera(cornell_box(), {278, 274.4, -791.6031940932656}, {278, 274.4, 279.6});
-  expect_camera(read_obj(EXACTFF_DATA_DIR "/scenes/slats.obj"), {0, 25.484081191583492, -24.734081191583492},
-                {0, 0.75, 0});
-  expect_camera(models::make_scene("teapot"), {0, 0, 20.424256452136767}, {0, 0, 3});
-  expect_camera(models::make_scene("mesh"), {0, 2.413638467820515, -1.913638467820515}, {0, 0, 0.5});
-  expect_camera(models::make_scene("lattice"), {0.125, -3.0411012904273527, -2.7598512904273527},
-                {0.125, 0.203125, 0.484375});
-}
-
 // A room of 4 x 5 x 2.8, z upwards, and the same with y upwards.
 TEST(DefaultCamera, HasTheAxisUpAlongWhichTheFloorLooks) {
   generate::PlainScene z_up;
@@ -510,13 +485,6 @@ TEST(Strip, HasThePicturesSideBySideAndNothingElse) {
   EXPECT_EQ(std::ranges::count(sheet.bytes, 255), 3 * (6 * 25 + 40 * 5));
   EXPECT_EQ(sheet.bytes.front(), 9);
   EXPECT_EQ(sheet.bytes.back(), 99);
-}
-
-TEST(ImageKind, GoesByTheExtension) {
-  EXPECT_EQ(image_kind("a/b.exr"), ImageKind::kExr);
-  EXPECT_EQ(image_kind("B.PNG"), ImageKind::kPng);
-  EXPECT_THROW((void)image_kind("a.jpg"), InputError);
-  EXPECT_THROW((void)image_kind("a"), InputError);
 }
 
 }  // namespace

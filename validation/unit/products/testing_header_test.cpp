@@ -82,13 +82,5 @@ TEST_F(FormFactorsNear, TellsLimitsAndWorstRows) {
                           "receiver 'b', source 'lamp': exact 0.25, found 0.375, error 0.125, relative 0.5");
 }
 
-TEST_F(FormFactorsNear, FailsWithoutTruthOrCoordinates) {
-  EXPECT_NONFATAL_FAILURE(EXPECT_FORM_FACTORS_NEAR("none.csv", first_coordinate, check::Criteria{.max_abs = 1.0}),
-                          "none.csv: cannot be opened");
-  const std::string bare = directory_.write("bare.csv", "receiver,exact\na,0.5\n").string();
-  EXPECT_NONFATAL_FAILURE(EXPECT_FORM_FACTORS_NEAR(bare, first_coordinate, check::Criteria{.max_abs = 1.0}),
-                          "has no coordinates to call first_coordinate with");
-}
-
 }  // namespace
 }  // namespace exactff

@@ -53,11 +53,6 @@ TEST_F(Truth, AnInterruptedRunGoesOn) {
   expect_only({"truth.csv"});
 }
 
-TEST_F(Truth, ARunThatFinishedNoRowLeavesNothing) {
-  interrupt(request(2), 0);
-  expect_only({});
-}
-
 // Blocks of few rows, not in order, so that a few bytes can be damaged in many ways.
 std::string small_journal(const Rows& rows, const fs::path& file) {
   RowJournal journal(file, rows, Existing::kReplace, {});

@@ -63,12 +63,6 @@ TEST_F(TruthPipe, WhatAPipeCannotHaveIsRefused) {
   EXPECT_TRUE(said("--force is given with -o - ")) << error_;
 }
 
-TEST_F(TruthPipe, AFullDiskIsToldWithWords) {
-  (void)shell(truth_ + "--on floor --grid 20x20 -o - > /dev/full");
-  EXPECT_EQ(code_, 2);
-  EXPECT_TRUE(said("exactff: the rows could not be written (the output is incomplete)")) << error_;
-}
-
 TEST_F(TruthPipe, SceneAndReceiversComeFromStandardInput) {
   (void)directory_.write("points.csv", "x,y,z,nx,ny,nz,on\n278,0,279,0,1,0,floor\n100,0,100,0,1,0,floor\n");
   const std::string by_file = shell(truth_ + "--receivers points.csv -o -");
@@ -101,24 +95,6 @@ TEST_F(TruthPipe, ATruthFileMayNameTheReceivers) {
   EXPECT_EQ(std::ranges::count(piped, '\n'), 2 + 25) << piped;
 }
 
-TEST_F(TruthPipe, UnitNormalsAreFurtherColumns) {
-  const std::string flags = "--on left,floor --grid 2x2 --source light -o - ";
-  (void)directory_.write("plain.csv", shell(truth_ + flags));
-  (void)directory_.write("with.csv", shell(truth_ + flags + "--unit-normals"));
-  const table::Table plain = table::read(directory_.path() / "plain.csv");
-  const table::Table with = table::read(directory_.path() / "with.csv");
-  EXPECT_FALSE(plain.column("ux"));
-  EXPECT_EQ(plain.head(), with.head());
-  ASSERT_EQ(plain.rows(), with.rows());
-  for (std::size_t row = 0; row < with.rows(); ++row) {
-    const auto component = [&](const char* name) { return with.numbers(with.column(name).value())[row]; };
-    EXPECT_NEAR(std::hypot(component("ux"), component("uy"), component("uz")), 1.0, 1e-15);
-    for (std::size_t i = 0; i < plain.columns().size(); ++i) {
-      EXPECT_EQ(plain.at(row, i), with.at(row, with.column(plain.columns()[i].name).value()));
-    }
-  }
-}
-
 // --- the unit normal -----------------------------------------------------------------------------------------
 
 TEST(UnitNormal, IsCorrectlyRounded) {
@@ -143,14 +119,6 @@ TEST(UnitNormal, IsTheNearestOfEveryNormal) {
       ASSERT_LE(std::abs(static_cast<double>(exact - static_cast<long double>(found))), 0.501 * ulp) << i;
     }
   }
-}
-
-TEST(UnitNormal, IsKeptFromRowToRow) {
-  truth::UnitNormal unit;
-  EXPECT_EQ(unit.of({0, 0, 1}), (Vec3{0, 0, 1}));
-  EXPECT_EQ(unit.of({0, 2, 0}), (Vec3{0, 1, 0}));
-  EXPECT_EQ(unit.of({0, 2, 0}), (Vec3{0, 1, 0}));
-  EXPECT_EQ(unit.of({5, 0, 0}), (Vec3{1, 0, 0}));
 }
 
 }  // namespace

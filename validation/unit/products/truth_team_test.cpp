@@ -150,22 +150,5 @@ TEST_F(TruthTeam, AProcessThatSeesOtherFilesIsNamed) {
       << told;
 }
 
-TEST_F(TruthTeam, AProcessThatCannotReadItsInputIsNamed) {
-  const auto thrown = run(3, [this](int rank) {
-    if (rank == 1) throw InputError(Problem{"room.obj", 0, "cannot be opened", {}, {}});
-    return request(100);
-  });
-  EXPECT_EQ(message_of<InputError>(thrown), "on rank 1 (here): room.obj: cannot be opened");
-}
-
-TEST_F(TruthTeam, ALeaderThatCannotBeginEndsAll) {
-  const auto thrown = run(4, [this](int) {
-    Request asked = request(2);
-    asked.receivers.clear();
-    return asked;
-  });
-  EXPECT_NE(message_of<InputError>(thrown).find("there are no receivers"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace exactff::truth

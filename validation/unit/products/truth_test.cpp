@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -102,16 +101,6 @@ TEST_F(Truth, EveryRowIsTheExactValueOfItsReceiverAndSource) {
     EXPECT_EQ(fields[19], to_string(f.status));
   }
   EXPECT_GT(hidden, 0);
-}
-
-TEST_F(Truth, TheTallyReadsTheLastFieldOfEveryRow) {
-  const std::string text = "\"a,zero\"\"\",1,certified\nb,2,zero\n\"c,\",3,not certified\nd,4,underflow\n";
-  for (std::size_t cut = 0; cut <= text.size(); ++cut) {
-    Tally tally;
-    tally.add(text.substr(0, cut));
-    tally.add(text.substr(cut));
-    EXPECT_EQ(tally.by_status(), (std::array<std::uint64_t, 4>{1, 1, 1, 1}));
-  }
 }
 
 TEST_F(Truth, SenselessRequestsAreRefused) {

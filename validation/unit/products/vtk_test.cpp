@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <cmath>
 #include <fstream>
 #include <set>
 
@@ -91,18 +90,6 @@ class VtkWriter : public testing::Test {
   const validation::TemporaryDirectory directory_{validation::memory_folder()};
 };
 
-TEST_F(VtkWriter, NamesTheSceneAfterTheFile) {
-  EXPECT_EQ(scene_file("a/map.vtp"), "a/map_scene.vtp");
-  EXPECT_EQ(scene_file("map.of.it.VTU"), "map.of.it_scene.VTU");
-}
-
-TEST_F(VtkWriter, RefusesOtherExtensions) {
-  for (const char* name : {"map.vtk", "map", "vtp", ".vtp", "map.vtp.csv"}) {
-    EXPECT_THROW(require_extension(name), InputError) << name;
-  }
-  require_extension("map.Vtp");
-}
-
 TEST_F(VtkWriter, LeavesNothingWhenItIsCancelledOrCannotWrite) {
   const Scene scene = square(1.0);
   const std::vector<Receiver> receivers = grid_receivers(scene, faces_with_area(scene), {2, 2});
@@ -112,29 +99,6 @@ TEST_F(VtkWriter, LeavesNothingWhenItIsCancelledOrCannotWrite) {
   fs::create_directory(directory_.path() / "map_scene.vtu.whole");  // the scene's file cannot be opened
   EXPECT_THROW(write(content, directory_.path() / "map.vtu"), InputError);
   EXPECT_EQ(files(), std::vector<fs::path>{"map_scene.vtu.whole"});
-}
-
-TEST_F(VtkWriter, WritesASceneAlone) {
-  const Scene scene = square(1.0);
-  const std::vector<Receiver> receivers = grid_receivers(scene, faces_with_area(scene), {2, 2});
-  write(Content{&scene, receivers, {}, {}}, directory_.path() / "map.vtp");
-  write_faces(scene, {}, {}, directory_.path() / "room.vtp");
-  EXPECT_EQ(validation::text_of(directory_.path() / "room.vtp"),
-            validation::text_of(directory_.path() / "map_scene.vtp"));
-}
-
-TEST_F(VtkWriter, RefusesAFieldThatHasNotAValueForEachReceiver) {
-  const Scene scene = square(1.0);
-  const std::vector<Receiver> receivers = grid_receivers(scene, faces_with_area(scene), {2, 2});
-  const Content content{&scene, receivers, {{"exact", 3, std::vector<double>(11)}}, {}};
-  EXPECT_THROW(write(content, directory_.path() / "map.vtp"), std::invalid_argument);
-}
-
-TEST_F(VtkWriter, LatticesHaveTheCornersOfTheirOutline) {
-  const Scene scene = square(0.1);
-  const Receiver cell = grid_receivers(scene, faces_with_area(scene), {2, 2}).front();
-  const std::array<Vec3, 4> corners = {Vec3{0, 0, 0}, {0.1, 0, 0}, {0.1, 0.1, 0}, {0, 0.1, 0}};
-  EXPECT_EQ(cell.cell->lattice->corners, corners);
 }
 
 TEST_F(VtkWriter, AConvexOutlineCutsCells) {

@@ -67,29 +67,6 @@ class FieldFactors(unittest.TestCase):
                                       [[0, 0, -1]] * 4, atol=1e-15)
         self.assertEqual(list(cells.block), list(range(40)))
 
-    def test_blocks_are_squares_of_cells(self):
-        cells = plates(4, 2)
-        self.assertEqual(list(cells.block), [block for block in range(10) for _ in range(4)])
-        self.assertEqual(list(cells.patch), [0] * 16 + [1] * 16 + [2] * 4 + [3] * 4)
-        for block in range(10):
-            quads = numpy.array(cells.corners)[cells.block == block]
-            corners = numpy.unique(cells.points[quads].reshape(-1, 3), axis=0)
-            numpy.testing.assert_allclose(numpy.ptp(corners, axis=0), [0.5, 0.5, 0])
-
-    def test_cells_may_be_triangles(self):
-        cells = square_and_triangle()
-        numpy.testing.assert_allclose(cells.areas, [1, 0.5])
-        numpy.testing.assert_allclose(cells.normals, [[0, 0, 1], [0, 0, -1]])
-        with tempfile.TemporaryDirectory() as name:
-            openfoam.write_case(pathlib.Path(name), cells)
-            faces = (pathlib.Path(name) / "constant/polyMesh/faces").read_text()
-            calculix.write_deck(pathlib.Path(name) / "scene.inp", cells, "300.")
-            deck = (pathlib.Path(name) / "scene.inp").read_text()
-        self.assertIn("4(3 2 1 0)\n3(6 5 4)\n", faces)
-        self.assertIn("ELSET=BRICKS\n1, 1, 2, 3, 4, 5, 6, 7, 8\n*ELEMENT, TYPE=C3D6", deck)
-        self.assertIn("C3D6, ELSET=BRICKS\n2, 9, 10, 11, 12, 13, 14\n", deck)
-        self.assertIn("9, 1.0, 0.0, 1.0\n10, 0.0, 1.0, 1.0\n11, 0.0, 0.0, 1.0\n12, 1.0, 0.0, 1.01\n", deck)
-
     def test_calculix_gets_triangles_for_polygons(self):
         points = numpy.array([[0, 0, 0], [2, 0, 0], [2, 1, 0], [1, 1, 0], [0, 1, 0]], float)
         polygon = factors.Cells(points, [[0, 1, 2], [0, 1, 2, 3, 4]], [0, 1], [0, 1], 2.0)
@@ -110,13 +87,6 @@ class FieldFactors(unittest.TestCase):
         faces = numpy.array([[0, 0.25, 0.5], [0, 0, 0.25], [0.125, 0.5, 0]])
         patches = factors.of_patches(faces, numpy.array([1.0, 3.0, 2.0]), numpy.array([0, 0, 1]))
         numpy.testing.assert_allclose(patches, [[0.0625, 0.3125], [0.625, 0]])
-
-    def test_openfoam_writes_lists_in_three_ways(self):
-        with tempfile.TemporaryDirectory() as name:
-            path = pathlib.Path(name) / "F"
-            path.write_text("// * * //\n\n4\n(\n2(0.5 0.25)\n3{0.125}\n0()\n\n2\n(\n1e-3\n2\n)\n\n)\n// ** //\n")
-            read = openfoam.read_lists(path, float)
-        self.assertEqual([list(one) for one in read], [[0.5, 0.25], [0.125] * 3, [], [0.001, 2]])
 
     def test_openfoam_factors_are_read(self):
         with tempfile.TemporaryDirectory() as name:
@@ -140,20 +110,6 @@ class FieldFactors(unittest.TestCase):
             matrix = calculix.read_factors(path, 4)
         self.assertEqual([list(numpy.nonzero(row)[0]) for row in matrix], [[3], [2], [1], [0]])
         numpy.testing.assert_allclose(matrix[[0, 1, 2, 3], [3, 2, 1, 0]], [0.1865195] * 2 + [0.54199256] * 2, rtol=1e-7)
-
-    def test_bricks_of_calculix_radiate_from_their_front(self):
-        with tempfile.TemporaryDirectory() as name:
-            deck = pathlib.Path(name) / "scene.inp"
-            calculix.write_deck(deck, plates(1), "300.")
-            lines = deck.read_text().splitlines()
-        bricks = [after for line, after in zip(lines, lines[1:]) if line.startswith("*ELEMENT")]
-        self.assertEqual(len(bricks), 4)
-        for line, up in zip(bricks, [1, -1, 1, -1]):
-            nodes = [lines[int(node)].split(",")[1:] for node in line.split(",")[1:]]
-            corner = numpy.array([[float(word) for word in node] for node in nodes])
-            outward = -numpy.cross(corner[1] - corner[0], corner[3] - corner[0])
-            self.assertEqual(numpy.sign(outward[2]), up)
-            self.assertLess((corner[4] - corner[0]) @ outward, 0)
 
 
 unittest.main(argv=sys.argv[:1])

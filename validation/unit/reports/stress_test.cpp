@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <limits>
 #include <set>
 #include <sstream>
@@ -18,86 +17,6 @@ namespace {
 
 using validation::run_program;
 using validation::TemporaryDirectory;
-
-Interval between(double low, double high) { return {Rational(low), Rational(high)}; }
-
-std::string thirty_digits(const ClosedForm& form) { return form.value().decimals(30).value_or("undecided"); }
-
-// The catalogue's values, as in validation/reference/closed_form_test.cpp.
-TEST(StressClosedForm, ParallelRectangleBelowACorner) {
-  ClosedForm form(kUp);
-  form.add({2, 1, between(0, 1), between(0, 1)});
-  EXPECT_EQ(thirty_digits(form), "0.138531605994892996780769708634");
-}
-
-TEST(StressClosedForm, PerpendicularRectangle) {
-  ClosedForm form(kUp);
-  form.add({1, 1, between(0, 1), between(0, 1)});  // u is z, v is x
-  EXPECT_EQ(thirty_digits(form), "0.0557341970025535016096151456828");
-}
-
-TEST(StressClosedForm, TurnsWithTheAxesAndTheNormal) {
-  for (int axis = 0; axis < 3; ++axis) {
-    for (double sign : {-1.0, 1.0}) {
-      const double length = 3.0 * sign;
-      ClosedForm form({axis == 0 ? length : 0, axis == 1 ? length : 0, axis == 2 ? length : 0});
-      form.add({axis, Rational(sign), between(0, 1), between(0, 1)});
-      EXPECT_EQ(thirty_digits(form), "0.138531605994892996780769708634") << axis << ' ' << sign;
-    }
-  }
-}
-
-TEST(StressClosedForm, WeighsAndAdds) {
-  ClosedForm form(kUp);
-  form.add({2, 1, between(-1, 1), between(-1, 1)});
-  form.add({2, 1, between(-0.5, 0.5), between(-0.5, 0.5)}, -1);
-  EXPECT_EQ(thirty_digits(form), "0.314669953518798448298026682526");
-}
-
-TEST(StressClosedForm, KeepsItsDigitsWhereEverythingCancels) {
-  ClosedForm form(kUp);
-  form.add({2, 1, between(0, 1e-300), between(0, 1)});
-  // A strip of width w at the foot: w/(2 pi) (1/2 + pi/4)... = w/pi times the integral of 1/(1+y^2)^2.
-  const double expected = 1e-300 / M_PI * 0.5 * (0.5 + M_PI / 4);
-  EXPECT_NEAR(form.value().lower() / expected, 1.0, 1e-14);
-  EXPECT_TRUE(form.value().nearest().has_value());
-}
-
-TEST(StressClosedForm, IsExactlyZeroWithoutRectangles) {
-  ClosedForm form(kUp);
-  form.add({2, 1, between(1, 1), between(0, 1)});  // empty
-  EXPECT_EQ(form.value().nearest(), 0.0);
-  EXPECT_EQ(form.value().upper(), 0.0);
-}
-
-TEST(StressStage, StripsLeaveWhatNoShadowCovers) {
-  const Rectangle source{2, 1, between(-1, 1), between(-1, 1)};
-  const ClosedForm left =
-      left_by_strips(kUp, source, {between(0.5, 3), between(-0.5, 0), between(-2, -0.75), between(-0.25, 0.25)});
-  ClosedForm expected(kUp);
-  expected.add({2, 1, between(-0.75, -0.5), between(-1, 1)});
-  expected.add({2, 1, between(0.25, 0.5), between(-1, 1)});
-  EXPECT_EQ(thirty_digits(left), thirty_digits(expected));
-}
-
-TEST(StressStage, ShadowsGrowWithDistance) {
-  const Rectangle shadow = LevelView({1, 2, 0}, 4).shadow({1.5, 2}, {1, 2}, 1);
-  EXPECT_EQ(shadow.u.low, 2);
-  EXPECT_EQ(shadow.u.high, 4);
-  EXPECT_EQ(shadow.v.low, -4);
-  EXPECT_EQ(shadow.v.high, 0);
-  EXPECT_EQ(shadow.distance, 4);
-}
-
-const Polygon kSquare = {{-1, -1, 1}, {-1, 1, 1}, {1, 1, 1}, {1, -1, 1}};  // faces down
-const Polygon kHole = {{-0.5, -0.5, 1}, {0.5, -0.5, 1}, {0.5, 0.5, 1}, {-0.5, 0.5, 1}};
-
-TEST(StressDoubleFormulas, AgreeOnABenignRegionWithAHole) {
-  for (AngleFormula formula : {AngleFormula::kAcos, AngleFormula::kAtan2, AngleFormula::kAtan2Difference}) {
-    const std::vector<Polygon> region = {kSquare, kHole};
-    EXPECT_NEAR(form_factor_in_double(region, {0, 0, 0}, {0, 0, 5}, formula), 0.3146699535187985, 1e-15);
-  }
-}
 
 TEST(StressDoubleFormulas, LoseDigitsInTheKnownOrder) {
   const double h = 1e-2;
@@ -154,12 +73,6 @@ TEST(StressJudgement, TampierisAlgorithmIsJudgedByItsTolerance) {
   EXPECT_EQ(reaches_text(result, Method::kAdaptive), "1 (refused)");
 }
 
-TEST(StressJudgement, NoNumberIsNotUsable) {
-  FamilyResult result;
-  result.rows = {row_with_error(1, std::numeric_limits<double>::quiet_NaN())};
-  EXPECT_EQ(usable_up_to(result, Method::kAcos, 1e300), 0.0);
-}
-
 TEST(StressJudgement, ADisagreementIsNotSound) {
   Report report;
   report.families.push_back({{}, {row_with_error(1, 0), row_with_error(2, 0)}});
@@ -169,15 +82,6 @@ TEST(StressJudgement, ADisagreementIsNotSound) {
   report.families[0].rows[1].agrees = true;
   report.families[0].rows[1].status = Status::kNotCertified;
   EXPECT_FALSE(report.sound());
-}
-
-TEST(StressWords, PowersAreWrittenAsPowers) {
-  EXPECT_EQ(stiffness_text(1), "1");
-  EXPECT_EQ(stiffness_text(4096), "4096");
-  EXPECT_EQ(stiffness_text(1e4), "10⁴");
-  EXPECT_EQ(stiffness_text(1e300), "10³⁰⁰");
-  EXPECT_EQ(stiffness_text(0x1p52), "2⁵²");
-  EXPECT_EQ(stiffness_text(0), "–");
 }
 
 TEST(StressFamilies, HaveNamesOfTheirOwnAndRiseFromABenignStart) {
@@ -254,10 +158,6 @@ TEST(Stress, AnUnknownFamilyIsAnInputErrorThatNamesTheKnownOnes) {
   }
 }
 
-TEST(Stress, StopsWhenItIsCancelled) {
-  EXPECT_THROW((void)run({{"shrink"}, 2, {}}, {{}, [] { return true; }}), Cancelled);
-}
-
 // Cancelled after `rows` finished scenes.
 Report interrupted_run(std::size_t rows, const std::vector<std::string>& families) {
   std::atomic<std::size_t> done = 0;
@@ -290,29 +190,6 @@ TEST(Stress, KeepsTheFamiliesThatAreFinishedWhenItIsCancelled) {
   EXPECT_EQ(validation::text_of(folder / "values.csv").find("incomplete"), std::string::npos);
 }
 
-TEST(Stress, TheReportHoldsEveryFamilyAndFetchesNothing) {
-  const Report report = run({{"crack", "crack-ulp"}, 2, "exactff stress <&>"});
-  page::DrawnFigures drawn;
-  for (const FamilyResult& family : report.families) {
-    for (page::Figure& figure : figures(family)) drawn.figures.push_back({std::move(figure), "<svg></svg>"});
-  }
-  ASSERT_EQ(drawn.figures.size(), 6U);
-  const std::string page = report_page(report, drawn);
-  const auto count = [&](const std::string& part) {
-    std::size_t found = 0;
-    for (std::size_t at = page.find(part); at != std::string::npos; at = page.find(part, at + 1)) ++found;
-    return found;
-  };
-  EXPECT_EQ(count("<figure "), 6U);
-  EXPECT_EQ(count(" id=\"crack\">"), 1U);
-  EXPECT_EQ(count(" id=\"crack-ulp\">"), 1U);
-  EXPECT_EQ(count("<details open"), 0U) << "families fold";
-  EXPECT_EQ(count("exactff stress &lt;&amp;&gt;"), 1U);
-  for (const char* outside : {"http:", "https:", "<script", "src=", "<link", "@import", "url("}) {
-    EXPECT_EQ(count(outside), 0U) << outside;
-  }
-}
-
 TEST(StressCommand, WritesItsFilesAndReplacesThem) {
   const TemporaryDirectory directory;
   const std::string folder = (directory.path() / "out").string();
@@ -327,29 +204,18 @@ TEST(StressCommand, WritesItsFilesAndReplacesThem) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(directory.path()), {}), 1) << "nothing beside the folder";
 }
 
-TEST(StressCommand, PrintsASummaryAndOnRequestEverything) {
-  const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
-  const std::vector<std::string> arguments = {"stress", "--family", "overlap", "--threads", "1"};
-  const auto summary = run_program(EXACTFF_PROGRAM, arguments);
-  EXPECT_LT(lines(summary.output), 15) << summary.output;
-  EXPECT_NE(summary.output.find("--all prints every error.\n"), std::string::npos) << summary.output;
-  std::vector<std::string> with_all = arguments;
-  with_all.emplace_back("--all");
-  const auto all = run_program(EXACTFF_PROGRAM, with_all);
-  EXPECT_GT(lines(all.output), lines(summary.output) + 28) << all.output;
-  EXPECT_NE(all.output.find("truth: closed form"), std::string::npos);
-}
-
-TEST(StressCommand, RefusesAnUnknownFamily) {
-  EXPECT_EQ(run_program(EXACTFF_PROGRAM, {"stress", "--family", "cracks"}).exit_code, 2);
-}
-
 TEST(StressCommand, ListsItsFamilies) {
   const auto run = run_program(EXACTFF_PROGRAM, {"stress", "--list"});
   EXPECT_EQ(run.exit_code, 0);
   for (const FamilyInfo& family : families()) {
     EXPECT_NE(run.output.find(family.name), std::string::npos) << family.name;
   }
+}
+
+TEST(StressJudgement, NoNumberIsNotUsable) {
+  FamilyResult result;
+  result.rows = {row_with_error(1, std::numeric_limits<double>::quiet_NaN())};
+  EXPECT_EQ(usable_up_to(result, Method::kAcos, 1e300), 0.0);
 }
 
 }  // namespace

@@ -82,12 +82,5 @@ TEST(Strip, IsSeenByTheCameraThatIsAskedFor) {
   EXPECT_FALSE(strip_by(away));
 }
 
-TEST(Strip, StopsWhenItIsCancelled) {
-  const Scene scene = validation::small_room(true);
-  const study::Study study = room_study(scene, 1, "area-sampling:samples=4");
-  std::vector<LeftOut> left_out;
-  EXPECT_THROW((void)strip_of(study, left_out, {{}, [] { return true; }}), Cancelled);
-}
-
 }  // namespace
 }  // namespace exactff::report

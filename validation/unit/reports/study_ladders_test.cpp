@@ -36,29 +36,10 @@ TEST(ParseLadder, TakesSeveralValuesOfOneSetting) {
   EXPECT_EQ(rung_name(ladder, 1), "area, stratified, samples 16");
 }
 
-TEST(ParseLadder, OfOneRungHasNothingAlongWhichItGoes) {
-  const Ladder ladder = parse_ladder("hemicube:resolution=64");
-  EXPECT_EQ(ladder.rungs.size(), 1U);
-  EXPECT_EQ(ladder.along, "");
-  EXPECT_EQ(rung_text(ladder, 0), "");
-  EXPECT_EQ(rung_name(ladder, 0), ladder.name);
-  EXPECT_EQ(parse_ladder("exact").name, "exact");
-}
-
 TEST(ParseLadder, DropsRepetitions) {
   EXPECT_EQ(parse_ladder("hemicube:resolution=64|32|64").rungs.size(), 2U);
   // The centre pattern has one ray, whatever the number of rays is set to.
   EXPECT_EQ(parse_ladder("adaptive:pattern=centre,rays=1|4|16").rungs.size(), 1U);
-}
-
-TEST(ParseLadder, RefusesTwoSettingsWithSeveralValues) {
-  const std::string said = complaint([] { (void)parse_ladder("nettle:rays=1|4,splits=1|2"); });
-  EXPECT_NE(said.find("'rays' and 'splits' of nettle both have several values"), std::string::npos) << said;
-}
-
-TEST(ParseLadder, RefusesSeveralSeeds) {
-  const std::string said = complaint([] { (void)parse_ladder("area-sampling:seed=1|2"); });
-  EXPECT_NE(said.find("--method-seeds"), std::string::npos) << said;
 }
 
 TEST(ParseLadder, NamesWhatItDoesNotKnow) {
@@ -87,10 +68,6 @@ TEST(DefaultLadders, AreEveryMethodByRisingEffort) {
   }
 }
 
-TEST(DefaultLadders, NeedNoLight) {
-  for (const Ladder& ladder : default_ladders(0.0)) EXPECT_FALSE(ladder.name.starts_with("adaptive")) << ladder.name;
-}
-
 TEST(LeaveOut, TakesLaddersThatCannotShowAnything) {
   const auto left = [](const Scope& scope) {
     std::vector<Ladder> ladders = default_ladders(1.0);
@@ -108,33 +85,6 @@ TEST(LeaveOut, TakesLaddersThatCannotShowAnything) {
             "method adaptive, exact V: no receiver has a source hidden in part, so that there is no sampling to be "
             "replaced\n");
   EXPECT_EQ(left({0.0, 1.0, true, true}).size(), 5U) << "the adaptive ones";
-}
-
-TEST(AddSweeps, MakesEachSettingOneRung) {
-  Sweeps sweeps;
-  complete(sweeps, {20.0, 100.0, true});
-  const std::vector<AdaptiveOptions> settings = combine(sweeps).settings;
-  std::vector<Ladder> ladders = default_ladders(20.0);
-  add_sweeps(ladders, settings);
-  std::vector<std::string> rungs;
-  std::set<std::string> names;
-  for (const Ladder& ladder : ladders) {
-    for (std::size_t r = 0; r < ladder.rungs.size(); ++r) {
-      rungs.push_back(ladder.rungs[r].text());
-      EXPECT_TRUE(names.insert(rung_name(ladder, r)).second) << rung_name(ladder, r);
-    }
-  }
-  for (const AdaptiveOptions& setting : settings) {
-    EXPECT_EQ(std::ranges::count(rungs, without_seed(choice_of(setting)).text()), 1);
-  }
-  std::vector<std::string> added;
-  for (const Ladder& ladder : ladders) {
-    if (ladder.only_of_sweeps) added.push_back(ladder.name);
-  }
-  EXPECT_EQ(added, (std::vector<std::string>{"adaptive, 1 ray", "adaptive, 4 rays", "adaptive, 16 rays, literal",
-                                             "adaptive, other settings"}));
-  EXPECT_TRUE(names.contains("adaptive, 64 rays, regular, ε_B 0.02"));
-  EXPECT_TRUE(names.contains("adaptive, 256 rays, ε_A 0.1, ε_B 0.0002"));
 }
 
 // --- choices -------------------------------------------------------------------------------------------------
@@ -182,20 +132,6 @@ TEST(OrderOfTiming, HasTheSameShareOfPartlyHiddenFromTheStart) {
                                       [](std::size_t i) { return i < 60; });
     EXPECT_NEAR(static_cast<double>(partly), 2.0 * static_cast<double>(first) / 3.0, 1.0) << first;
   }
-}
-
-TEST(PlannedSeconds, CountWorkAtFixedPrices) {
-  methods::Counters none, rays, exact;
-  rays.add("rays", 1000);
-  rays.add("leaves", 10);
-  const double before = planned_seconds(rays, 3);
-  rays.add("leaves: sampled", 10);
-  EXPECT_EQ(planned_seconds(rays, 3), before) << "counted among the leaves";
-  EXPECT_GT(before, planned_seconds(none, 3));
-  EXPECT_GT(planned_seconds(none, 3), 0.0);
-  EXPECT_EQ(before, planned_seconds(rays, 3000));
-  exact.add("exact V", 1);
-  EXPECT_GT(planned_seconds(exact, 3000), planned_seconds(exact, 3)) << "every face may be in the way";
 }
 
 TEST(SpreadOrder, IsAPermutationWhoseBeginningsAreSpread) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -67,15 +68,6 @@ TEST(Slopes, OfAreaSamplingAreThoseOfTheory) {
     }
   }
   EXPECT_FALSE(study.methods.slopes.back().partly.has_value()) << "one rung has no slope";
-}
-
-TEST(Slopes, OfOneSeedHaveNoInterval) {
-  const Scene room = small_room(true);
-  const Study study = study_of(room, {"nettle:variant=literal,rays=1,splits=1|2|4"}, {.seeds = 1, .receivers = 8});
-  const Slope& slope = slope_of(study, study.methods.ladders.front().name, Sight::kVisible);
-  EXPECT_EQ(slope.seeds, 1U);
-  EXPECT_EQ(slope.low, slope.exponent);
-  EXPECT_EQ(slope.high, slope.exponent);
 }
 
 TEST(MethodStudy, HoldsEveryRungAtTheChosenReceivers) {
@@ -151,45 +143,63 @@ TEST(MethodStudy, HoldsEverySettingOfTheSweeps) {
   }
 }
 
-// As the exact method three times over.
-struct ThreeTimesExact : methods::Evaluator {
+// A method of a user, added as include/README.md explains: what a function makes of the exact method.
+using Made =
+    std::function<methods::Estimate(methods::Evaluator& exact, const methods::PreparedSource&, const Settings&)>;
+
+struct MadeOfExact : methods::Evaluator {
   std::unique_ptr<methods::Evaluator> exact;
-  Receiver receiver;
-  void look_from(const Receiver& from) override { receiver = from; }
+  Settings settings;
+  Made made;
+  void look_from(const Receiver& receiver) override { exact->look_from(receiver); }
   using Evaluator::form_factor;
   methods::Estimate form_factor(const methods::PreparedSource& source) override {
-    for (int k = 0; k < 2; ++k) (void)exact->form_factor(receiver, source);
-    return exact->form_factor(receiver, source);
+    return made(*exact, source, settings);
   }
 };
 
-struct ThreeTimesOnScene : methods::PreparedScene {
-  explicit ThreeTimesOnScene(const Scene& given)
-      : PreparedScene(given), exact(methods::method_named("exact").prepare(given)) {}
+struct MadeOnScene : methods::PreparedScene {
+  MadeOnScene(const Scene& given, Made function)
+      : PreparedScene(given), exact(methods::method_named("exact").prepare(given)), made(std::move(function)) {}
   std::unique_ptr<methods::PreparedSource> prepare_source(const Selection& selection) const override {
     return exact->prepare_source(selection);
   }
-  std::unique_ptr<methods::Evaluator> configure(const Settings& /*settings*/) const override {
-    auto evaluator = std::make_unique<ThreeTimesExact>();
+  std::unique_ptr<methods::Evaluator> configure(const Settings& settings) const override {
+    auto evaluator = std::make_unique<MadeOfExact>();
     evaluator->exact = exact->configure(methods::method_named("exact").defaults());
+    evaluator->settings = settings;
+    evaluator->made = made;
     return evaluator;
   }
   std::unique_ptr<methods::PreparedScene> exact;
+  Made made;
 };
 
-TEST(MethodTimes, AreMultiplesOfTheExactMethods) {
-  methods::add_method({.name = "three-times-exact",
-                       .summary = "the exact method, called three times",
-                       .source = "",
-                       .settings = {},
-                       .prepare = [](const Scene& scene) { return std::make_unique<ThreeTimesOnScene>(scene); }});
-  const Scene scene = small_room(true);
+void add_users_method(const std::string& name, const std::vector<SettingSpec>& settings, const Made& made) {
+  methods::add_method(
+      {.name = name, .summary = "of a test", .source = "", .settings = settings, .prepare = [made](const Scene& scene) {
+         return std::make_unique<MadeOnScene>(scene, made);
+       }});
+}
+
+// Of these ladders alone, with a little work.
+Study study_of_ladders(const Scene& scene, const std::vector<std::string>& ladders, double budget = 1.0) {
   Request request = request_with_methods(scene, 1);
   validation::scatter(request);
+  request.methods.budget = budget;
   request.sweeps.enabled = false;
   request.seconds_for_a_time = 0.02;
-  request.methods.ladders = {parse_ladder("exact"), parse_ladder("three-times-exact")};
-  const Study study = run(std::move(request));
+  for (const std::string& ladder : ladders) request.methods.ladders.push_back(parse_ladder(ladder));
+  return run(std::move(request));
+}
+
+TEST(MethodTimes, AreMultiplesOfTheExactMethods) {
+  add_users_method("three-times-exact", {}, [](auto& exact, const auto& source, const auto&) {
+    for (int k = 0; k < 2; ++k) (void)exact.form_factor(source);
+    return exact.form_factor(source);
+  });
+  const Scene scene = small_room(true);
+  const Study study = study_of_ladders(scene, {"exact", "three-times-exact"}, 0.005);
   ASSERT_EQ(study.methods.cells.size(), 2U);
   const MethodCell &exact = study.methods.cells[0], &thrice = study.methods.cells[1];
   EXPECT_EQ(exact.seconds, study.exact_time.mean);
@@ -199,47 +209,16 @@ TEST(MethodTimes, AreMultiplesOfTheExactMethods) {
   EXPECT_GE(thrice.ratio_high, thrice.seconds / exact.seconds);
 }
 
-// A user-defined method: the exact value plus 1 / n, added as include/README.md explains.
-struct OffByOneOverN : methods::Evaluator {
-  std::unique_ptr<methods::Evaluator> exact;
-  double n = 1.0;
-  void look_from(const Receiver& receiver) override { exact->look_from(receiver); }
-  methods::Estimate form_factor(const methods::PreparedSource& source) override {
-    methods::Estimate estimate = exact->form_factor(source);
-    estimate.form_factor += 1.0 / n;
-    estimate.counters.add("samples", static_cast<std::uint64_t>(n));
-    return estimate;
-  }
-};
-
-struct OffOnScene : methods::PreparedScene {
-  explicit OffOnScene(const Scene& given)
-      : PreparedScene(given), exact(methods::method_named("exact").prepare(given)) {}
-  std::unique_ptr<methods::PreparedSource> prepare_source(const Selection& selection) const override {
-    return exact->prepare_source(selection);
-  }
-  std::unique_ptr<methods::Evaluator> configure(const Settings& settings) const override {
-    auto evaluator = std::make_unique<OffByOneOverN>();
-    evaluator->exact = exact->configure(methods::method_named("exact").defaults());
-    evaluator->n = settings.number("n");
-    return evaluator;
-  }
-  std::unique_ptr<methods::PreparedScene> exact;
-};
-
 TEST(MethodStudy, TakesAUsersMethodLikeAnyOther) {
-  methods::add_method({.name = "off-by-one-over-n",
-                       .summary = "the exact value plus 1 / n",
-                       .source = "",
-                       .settings = {number_setting("n", 1.0, 1.0, 1e6, "how little it is off")},
-                       .prepare = [](const Scene& scene) { return std::make_unique<OffOnScene>(scene); }});
+  add_users_method("off-by-one-over-n", {number_setting("n", 1.0, 1.0, 1e6, "how little it is off")},
+                   [](auto& exact, const auto& source, const Settings& settings) {
+                     methods::Estimate estimate = exact.form_factor(source);
+                     estimate.form_factor += 1.0 / settings.number("n");
+                     estimate.counters.add("samples", static_cast<std::uint64_t>(settings.number("n")));
+                     return estimate;
+                   });
   const Scene scene = small_room(true);
-  Request request = request_with_methods(scene, 1);
-  validation::scatter(request);
-  request.methods.budget = 1.0;
-  request.sweeps.enabled = false;
-  request.methods.ladders = {parse_ladder("off-by-one-over-n:n=10|100|1000")};
-  const Study study = run(std::move(request));
+  const Study study = study_of_ladders(scene, {"off-by-one-over-n:n=10|100|1000"});
   ASSERT_EQ(study.methods.cells.size(), 3U);
   const double rho_b = 0.5 * 30.0;  // the channel where the lamp is brightest
   EXPECT_NEAR(study.methods.cells[1].error.rms, rho_b / 100.0, 1e-12);
@@ -247,47 +226,19 @@ TEST(MethodStudy, TakesAUsersMethodLikeAnyOther) {
   EXPECT_NEAR(study.methods.slopes[0].partly->exponent, -1.0, 1e-9);
 }
 
-// A method that returns `value` everywhere.
-struct Constant : methods::Evaluator {
-  double value = 0.0;
-  void look_from(const Receiver&) override {}
-  using Evaluator::form_factor;
-  methods::Estimate form_factor(const methods::PreparedSource&) override {
-    methods::Estimate estimate{value, {}};
-    estimate.counters.add("samples", 1);
-    return estimate;
-  }
-};
-
-struct ConstantOnScene : methods::PreparedScene {
-  using PreparedScene::PreparedScene;
-  std::unique_ptr<methods::Evaluator> configure(const Settings& settings) const override {
-    auto evaluator = std::make_unique<Constant>();
-    evaluator->value = 1.5;
-    if (settings.word("of") == "nan") evaluator->value = std::numeric_limits<double>::quiet_NaN();
-    if (settings.word("of") == "inf") evaluator->value = std::numeric_limits<double>::infinity();
-    return evaluator;
-  }
-};
-
 TEST(MethodStudy, CountsValuesThatAreNoNumbersOrLeaveTheRange) {
-  methods::add_method({.name = "constant",
-                       .summary = "the same everywhere",
-                       .source = "",
-                       .settings = {word_setting("of", {"one-and-a-half", "nan", "inf"}, "which value")},
-                       .prepare = [](const Scene& scene) { return std::make_unique<ConstantOnScene>(scene); }});
+  add_users_method("constant", {word_setting("of", {"one-and-a-half", "nan", "inf"}, "which value")},
+                   [](auto&, const auto&, const Settings& settings) {
+                     methods::Estimate estimate{1.5, {}};
+                     if (settings.word("of") == "nan") estimate.form_factor = std::numeric_limits<double>::quiet_NaN();
+                     if (settings.word("of") == "inf") estimate.form_factor = std::numeric_limits<double>::infinity();
+                     estimate.counters.add("samples", 1);
+                     return estimate;
+                   });
   const Scene scene = small_room(true);
-  const auto study_with = [&](const std::vector<std::string>& ladders) {
-    Request request = request_with_methods(scene, 1);
-    validation::scatter(request);
-    request.methods.budget = 1.0;
-    request.sweeps.enabled = false;
-    for (const std::string& ladder : ladders) request.methods.ladders.push_back(parse_ladder(ladder));
-    return run(std::move(request));
-  };
-  const Study sound = study_with({"exact", "hemicube:resolution=16"});
+  const Study sound = study_of_ladders(scene, {"exact", "hemicube:resolution=16"});
   EXPECT_TRUE(report::range_sentences(sound).empty()) << report::range_sentences(sound).front();
-  const Study study = study_with({"exact", "constant:of=nan", "constant:of=inf", "constant"});
+  const Study study = study_of_ladders(scene, {"exact", "constant:of=nan", "constant:of=inf", "constant"});
   const std::vector<std::string> sentences = report::range_sentences(study);
   ASSERT_EQ(sentences.size(), 3U);
   EXPECT_TRUE(sentences[0].starts_with("6 of 6 values of constant, nan are not finite numbers; ")) << sentences[0];
@@ -327,25 +278,11 @@ TEST(MethodStudy, EndsALadderWhereItsBudgetEnds) {
 }
 
 TEST(MethodStudy, TellsWhichMethodRefusesTheScene) {
-  SceneBuilder builder("wide");
-  const MaterialId lamp = builder.add_material({"lamp", {1, 1, 1}, {1, 1, 1}});
-  const auto triangle = [&](const char* name, double z, double size, bool down) {
-    const std::uint32_t a = builder.add_vertex({-size, -size, z});
-    builder.add_vertex({size, -size, z});
-    builder.add_vertex({0, size, z});
-    builder.add_face(
-        builder.patch(name), lamp,
-        {down ? std::vector<std::uint32_t>{a, a + 2, a + 1} : std::vector<std::uint32_t>{a, a + 1, a + 2}});
-  };
-  triangle("floor", 0.0, 1.0, false);
-  triangle("light", 1.0, 1.0, true);
-  const Scene scene = builder.build();
-  Request request;
-  request.scene = &scene;
-  request.receivers = grid_receivers(scene, scene.select("floor"), {4, 4});
-  request.sources = {scene.select("light")};
+  const Scene scene = small_room(true);
+  Request request = small_request(scene, 1);
+  validation::scatter(request);
   request.sweeps.enabled = false;
-  request.seconds_for_a_time = 0.001;
+  request.methods.enabled = true;
   methods::Method picky = methods::method_named("hemicube");
   picky.name = "picky";
   picky.prepare = [](const Scene&) -> std::unique_ptr<methods::PreparedScene> {

@@ -20,7 +20,6 @@ namespace exactff::study {
 namespace {
 
 namespace fs = std::filesystem;
-using validation::names_in;
 using validation::small_study;
 using validation::whole_study;
 
@@ -93,13 +92,6 @@ TEST(Study, AReportOnSeveralScenesAndChaptersHoldsThemAll) {
   expect_nothing_fetched(text);
 }
 
-TEST(Study, EveryFigureHasItsOwnName) {
-  std::vector<LeftOut> left_out;
-  std::set<std::string> ids;
-  for (const page::Figure& figure : report::figures(whole_study(), left_out))
-    EXPECT_TRUE(ids.insert(figure.id).second) << figure.id;
-}
-
 TEST(InlinedSvg, HasItsOwnIdsAndNothingFromOutside) {
   const std::string svg =
       "<?xml version=\"1.0\"?>\n<svg viewBox=\"0 0 1 1\"\n xmlns=\"http://www.w3.org/2000/svg\"\n "
@@ -136,74 +128,16 @@ TEST(InlinedSvg, ComesFromEveryFigureThatGnuplotDraws) {
 
 // --- the folder --------------------------------------------------------------------------------------
 
-class OutputFolder : public ::testing::Test {
- protected:
-  OutputFolder() : root_(fs::temp_directory_path() / ("exactff-study-test-" + std::to_string(::getpid()))) {
-    fs::remove_all(root_);
-    fs::create_directories(root_);
-  }
-  ~OutputFolder() override {
-    std::error_code ignored;
-    fs::remove_all(root_, ignored);
-  }
-
-  fs::path root_;
-};
-
-TEST_F(OutputFolder, OfAStrangerIsRefused) {
-  fs::create_directories(root_ / "out");
-  EXPECT_NO_THROW(page::check_output_folder(root_ / "out"));
-  std::ofstream(root_ / "out" / "thesis.txt") << "do not lose me";
-  EXPECT_THROW(page::check_output_folder(root_ / "out"), InputError);
-  std::ofstream(root_ / "file") << "x";
-  EXPECT_THROW(page::check_output_folder(root_ / "file"), InputError);
-}
-
-TEST_F(OutputFolder, OfAnEarlierStudyMayBeReplaced) {
-  fs::create_directories(root_ / "out");
-  std::ofstream(root_ / "out" / "report.html") << "<!doctype html>\n";
-  EXPECT_THROW(page::check_output_folder(root_ / "out"), InputError) << "a page of anybody's";
-  std::ofstream(root_ / "out" / "room_summary.csv") << "# exactff 0.1.0 compare: summary\n";
-  EXPECT_NO_THROW(page::check_output_folder(root_ / "out" / ""));
-  std::ofstream(root_ / "out" / "values.csv") << "a,b\n";
-  EXPECT_THROW(page::check_output_folder(root_ / "out"), InputError) << "a table of somebody else's";
-}
-
-TEST_F(OutputFolder, OfACancelledStudyIsNotThere) {
-  const Hooks hooks{{}, [] { return true; }};
-  EXPECT_THROW((void)study::write_report(small_study(), root_ / "out", hooks), Cancelled);
-  EXPECT_TRUE(names_in(root_).empty());
-}
-
-TEST_F(OutputFolder, OfSeveralScenesHasTheirNamesBeforeTheFiles) {
-  report::StudyReport report;
-  report.title = "rooms";
-  report.scenes.push_back({"one", "One", small_study()});
-  report.scenes.push_back({"two", "Two", small_study()});
-  report.chapters.push_back({.name = "more", .title = "More", .values = {{"more.csv", "one", "# of one\nx\n1\n"}}});
-  {
-    const validation::EnvironmentVariable path("PATH", root_);
-    (void)write(report, root_ / "out");
-  }
-  for (const char* file : {"one_values.csv", "two_values.csv", "one_timings.csv", "more.csv", "report.html"}) {
-    EXPECT_TRUE(fs::exists(root_ / "out" / file)) << file;
-  }
-  EXPECT_FALSE(fs::exists(root_ / "out" / "values.csv"));
-  const std::string table = validation::text_of(root_ / "out" / "more.csv");
-  EXPECT_TRUE(table.starts_with("# exactff ") && table.ends_with(" compare: one\n# of one\nx\n1\n")) << table;
-  EXPECT_NO_THROW(page::check_output_folder(root_ / "out"));
-}
-
-TEST_F(OutputFolder, WithoutGnuplotHoldsTablesAndAReportThatSaysSo) {
-  const validation::EnvironmentVariable path("PATH", root_);
-  const auto messages = study::write_report(small_study(), root_ / "out");
-  ASSERT_EQ(messages.size(), 1U);
-  EXPECT_NE(messages.front().find("gnuplot"), std::string::npos);
-  EXPECT_EQ(names_in(root_), std::set<std::string>{"out"});
-  for (const report::StudyTable& table : report::tables()) {
-    EXPECT_EQ(fs::exists(root_ / "out" / table.file), table.has_rows(small_study())) << table.file;
-  }
-  EXPECT_TRUE(fs::exists(root_ / "out" / "report.html"));
+TEST(OutputFolder, OfAnEarlierStudyMayBeReplaced) {
+  const validation::TemporaryDirectory directory;
+  const fs::path out = directory.path() / "out";
+  fs::create_directories(out);
+  std::ofstream(out / "report.html") << "<!doctype html>\n";
+  EXPECT_THROW(page::check_output_folder(out), InputError) << "a page of anybody's";
+  std::ofstream(out / "room_summary.csv") << "# exactff 0.1.0 compare: summary\n";
+  EXPECT_NO_THROW(page::check_output_folder(out / ""));
+  std::ofstream(out / "values.csv") << "a,b\n";
+  EXPECT_THROW(page::check_output_folder(out), InputError) << "a table of somebody else's";
 }
 
 }  // namespace

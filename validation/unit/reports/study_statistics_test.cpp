@@ -8,7 +8,6 @@
 
 #include "kernel/statistics.h"
 #include "study/statistics.h"
-#include "text/escape.h"
 #include "text/phrases.h"
 
 namespace exactff::study {
@@ -24,12 +23,6 @@ TEST(Statistics, OfErrorsAgreeWithHandValues) {
   EXPECT_EQ(s.p99, 4);
   EXPECT_EQ(s.worst, 4);
   EXPECT_EQ(s.not_a_number, 0U);
-}
-
-TEST(Statistics, OfNothingAreZero) {
-  const ErrorStatistics s = error_statistics({});
-  EXPECT_EQ(s.rms, 0);
-  EXPECT_EQ(s.worst, 0);
 }
 
 TEST(Statistics, WhatIsNoNumberIsCountedApart) {
@@ -83,25 +76,12 @@ TEST(Statistics, TheSlopeOfAPowerLawIsItsExponent) {
 
 // --- words and numbers -------------------------------------------------------------------------------
 
-TEST(Text, ShortestDecimalsReadBack) {
-  EXPECT_EQ(text::shortest(0.1), "0.1");
-  EXPECT_EQ(text::shortest(1e300), "1e+300");
-  EXPECT_EQ(text::shortest(-0.0), "-0");
-  EXPECT_EQ(text::shortest(5e-324), "5e-324");
-}
-
 TEST(Text, ASharedPartIsNeverRoundedToNoneOrAll) {
   EXPECT_EQ(text::share(0, 10), "0 %");
   EXPECT_EQ(text::share(1, 100000), "under 0.1 %");
   EXPECT_EQ(text::share(99999, 100000), "over 99.9 %");
   EXPECT_EQ(text::share(1, 3), "33.3 %");
   EXPECT_EQ(text::share(3, 3), "100 %");
-}
-
-TEST(Text, FieldsAreQuotedWhereTheyMustBe) {
-  EXPECT_EQ(text::csv_field("plain"), "plain");
-  EXPECT_EQ(text::csv_field("1,2"), "\"1,2\"");
-  EXPECT_EQ(text::csv_field("a \"b\""), "\"a \"\"b\"\"\"");
 }
 
 TEST(Text, DurationsTakeTheUnitThatFits) {

@@ -6,7 +6,6 @@
 #include <limits>
 #include <set>
 #include <utility>
-#include <vector>
 
 #include "exactff/study.h"
 #include "study/settings.h"
@@ -20,14 +19,6 @@ using validation::small_request;
 using validation::small_room;
 
 // --- settings ---
-
-TEST(Settings, DefaultsFollowTheLargestContribution) {
-  Sweeps sweeps;
-  complete(sweeps, {20.0, 100.0, true});
-  EXPECT_EQ(sweeps.eps_b, (std::vector<double>{2, 0.2, 0.02, 0.002, 0.0002}));
-  EXPECT_EQ(sweeps.eps_a.front(), 0.0);
-  EXPECT_EQ(sweeps.eps_a[1], 10.0);
-}
 
 TEST(Settings, ASmallProductIsRunInFull) {
   Sweeps sweeps{{0.1, 0.01}, {0.0}, {4, 16}, {1, 2}, {SamplePattern::kJittered}, {Variant::kMended}};
@@ -56,21 +47,6 @@ TEST(Settings, WhatAPatternIgnoresMakesNoSetting) {
   Sweeps sweeps{{0.1}, {0.0}, {1, 4}, {1, 2, 3}, {SamplePattern::kCentre, SamplePattern::kRegular}, {Variant::kMended}};
   complete(sweeps, {});
   EXPECT_EQ(combine(sweeps).settings.size(), 3U);  // centre; regular with 1 and with 4 rays
-}
-
-TEST(Settings, RepetitionsAreDropped) {
-  Sweeps sweeps{{0.1, 0.1}, {0.0}, {4}, {1}, {SamplePattern::kJittered}, {Variant::kMended}};
-  complete(sweeps, {});
-  EXPECT_EQ(sweeps.eps_b.size(), 1U);
-}
-
-TEST(Settings, WithNothingToSampleOnlyEpsBIsSwept) {
-  Sweeps sweeps;
-  complete(sweeps, {1.0, 1.0, false});
-  const auto left_out = leave_out(sweeps, {1.0, 1.0, false});
-  EXPECT_EQ(left_out.size(), 4U);
-  EXPECT_EQ(sweeps.eps_b.size(), 5U);
-  EXPECT_EQ(sweeps.rays.size() * sweeps.eps_a.size() * sweeps.seeds.size() * sweeps.patterns.size(), 1U);
 }
 
 TEST(Settings, ImpossibleValuesAreInputErrors) {

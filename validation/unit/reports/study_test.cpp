@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <limits>
 #include <set>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,7 +22,6 @@ using validation::request_with_methods;
 using validation::small_request;
 using validation::small_room;
 using validation::small_study;
-using validation::text_of;
 using validation::value_tables;
 using validation::whole_study;
 
@@ -40,25 +38,6 @@ TEST(Study, OfAllMethodsHasAllTables) {
     EXPECT_TRUE(files.insert(table.file).second) << table.file;
   }
   EXPECT_EQ(value_tables(whole_study()).size(), 9U);
-}
-
-TEST(Study, WithoutMethodsComparesTheSweepsWithTheExactMethod) {
-  for (const report::StudyTable& table : report::tables()) {
-    EXPECT_EQ(table.has_rows(small_study()), table.file != "profile.csv" && table.file != "receivers.csv")
-        << table.file;
-  }
-  for (const MethodCell& cell : small_study().methods.cells) {
-    const std::string& name = small_study().methods.ladders[cell.ladder].rungs[cell.rung].method->name;
-    EXPECT_TRUE(name == "exact" || name == "adaptive") << name;
-  }
-}
-
-TEST(Study, ValuesHaveARowPerReceiverAndSetting) {
-  const std::string text = text_of(report::tables()[0], small_study());
-  std::size_t rows = 0;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) rows += line.starts_with('#') ? 0 : 1;
-  EXPECT_EQ(rows, 1 + small_study().exact.size() * small_study().settings.size());
 }
 
 TEST(Study, ErrorsAreApproximateMinusExact) {
@@ -100,18 +79,6 @@ TEST(Study, WithoutOccludersLeavesTheSamplingSweepsOut) {
   for (const Summary& summary : study.summaries) EXPECT_EQ(summary.rays, 0U);
 }
 
-TEST(Study, NeedsAReceiverAndASource) {
-  const Scene scene = small_room(true);
-  Request request = small_request(scene, 1);
-  request.receivers.clear();
-  EXPECT_THROW((void)run(std::move(request)), InputError);
-  SceneBuilder dark("dark");
-  for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}) dark.add_vertex(v);
-  dark.add_face(dark.patch("floor"), dark.add_material({}), {{0, 1, 2}});
-  const Scene unlit = dark.build();
-  EXPECT_THROW((void)run(small_request(unlit, 1)), InputError);
-}
-
 // Sums and means of such radiosities would overflow, and the tables would contain inf or nan.
 TEST(Study, RefusesSourcesNearTheLargestDouble) {
   SceneBuilder builder("blinding");
@@ -127,12 +94,6 @@ TEST(Study, RefusesSourcesNearTheLargestDouble) {
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("reduce the emissions"), std::string::npos) << error.what();
   }
-}
-
-TEST(Study, StopsWhenItIsCancelled) {
-  const Scene scene = small_room(true);
-  const Hooks hooks{{}, [] { return true; }};
-  EXPECT_THROW((void)run(small_request(scene, 2), hooks), Cancelled);
 }
 
 // Its recursion would take years: the probes of the budget stop early and report this.

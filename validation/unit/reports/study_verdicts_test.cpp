@@ -1,7 +1,6 @@
 // What a report concludes from a comparison of methods, in words.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -120,22 +119,6 @@ TEST_F(Verdicts, GrantAMethodThatErrsByRoundingAlone) {
             "exact method (100 µs per receiver) when every digit must be proved.");
 }
 
-TEST_F(Verdicts, AreDrawnWithWhatTheyRecommend) {
-  study_.request.scene = nullptr;
-  add_exact();
-  for (int k = 1; k <= 9; ++k) add("area-sampling:samples=" + std::to_string(k), {{0.3, 2e-4}});
-  add("nettle:variant=literal,splits=1|2", {{0.1, 5e-5}, {0.05, 9e-5}});
-  std::vector<LeftOut> left_out;
-  study_.methods.slopes.resize(study_.methods.ladders.size());
-  const std::vector<page::Figure> figures = report::figures(study_, left_out);
-  ASSERT_FALSE(figures.empty());
-  ASSERT_EQ(figures.front().id, "methods-time");
-  EXPECT_NE(figures.front().script.find("nettle, literal"), std::string::npos);
-  EXPECT_NE(figures.front().script.find("recommended"), std::string::npos);
-  EXPECT_NE(figures.front().caption.find("nettle, literal, splits 2, which the verdict recommends"), std::string::npos)
-      << figures.front().caption;
-}
-
 // What a smaller eps_B does to the RMS error is told in the direction in which it goes.
 TEST_F(Verdicts, SayWhetherASmallerToleranceHelps) {
   study_.settings = {{.eps_b = 0.1}, {.eps_b = 0.01}};
@@ -173,34 +156,6 @@ TEST_F(Verdicts, OfADarkSceneSaySo) {
   study_.exact[0].radiosity = {};
   add_exact();
   EXPECT_NE(report::verdict(study_).find("every form factor of this scene is 0"), std::string::npos);
-}
-
-TEST_F(Verdicts, SayThatNoOtherIsRightOrAsFast) {
-  add_exact();
-  add("hemicube:resolution=64", {{0.05, 2e-4}});
-  EXPECT_EQ(report::method_sentences(study_),
-            (std::vector<std::string>{"On this scene the exact value takes 100 µs per receiver on average; no other "
-                                      "setting that was run is accurate to 10⁻² of the brightest receiver (RMS).",
-                                      report::verdict(study_)}));
-}
-
-TEST_F(Verdicts, SayNothingOfExactAlone) {
-  EXPECT_TRUE(report::method_sentences(study_).empty());
-  add_exact();
-  EXPECT_TRUE(report::method_sentences(study_).empty());
-}
-
-TEST_F(Verdicts, OnADarkSceneAnErrorIsNoneOrBeyondMeasure) {
-  study_.exact[0].radiosity = {};
-  add_hemicube();
-  study_.methods.cells[0].error.rms = 0.0;
-  EXPECT_EQ(report::relative_error(study_, study_.methods.cells[0]), 0.0);
-  EXPECT_TRUE(std::isinf(report::relative_error(study_, study_.methods.cells[1])));
-}
-
-TEST(PowersOfTen, AreWrittenAsPeopleDo) {
-  EXPECT_EQ(report::power_of_ten(1e-2), "10⁻²");
-  EXPECT_EQ(report::power_of_ten(1e-6), "10⁻⁶");
 }
 
 TEST(SlopeWords, SayWhetherTheoryAgrees) {
