@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "adaptive/vec.h"
+#include "adaptive/sub_patch.h"
 #include "bench/double_contour.h"
 #include "bench/scenes.h"
 #include "bench/subjects.h"

@@ -1,17 +1,21 @@
-// exactff convert: writes a scene in another format.
+// exactff convert: writes a scene, or a table, in another format.
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/output.h"
 #include "exactff/scene_files.h"
+#include "exactff/table.h"
+#include "files/file.h"
 #include "flags/file_options.h"
 #include "flags/scene.h"
 #include "text/escape.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff::cli {
 namespace {
@@ -31,11 +35,14 @@ constexpr const char* kConvertFooter =
     "--triangulate cuts all faces into triangles. A face that is not exactly planar becomes the triangles that "
     "exactff\n"
     "takes it for.\n"
+    "A table (a truth file, a matrix, radiosities) is written as .csv, .npz (a NumPy archive with an array for each\n"
+    "column, and the head) or .jsonl (JSON lines, the first of which is the head).\n"
     "\n"
     "Example:\n"
     "  exactff convert room.obj room.ply\n"
     "  exactff convert @teapot:segments=4 teapot.stl\n"
-    "  exactff convert data/scenes/cornell_box.obj cells.obj --divide 50";
+    "  exactff convert data/scenes/cornell_box.obj cells.obj --divide 50\n"
+    "  exactff convert truth.csv truth.npz";
 
 struct ConvertArguments {
   flags::SceneArguments scene;
@@ -50,8 +57,27 @@ struct ConvertArguments {
   }
 };
 
+// What the input is decides what may be written.
+int convert_table(const ConvertArguments& args) {
+  const std::filesystem::path out = args.out;
+  const std::string extension = out.extension().string();
+  if (extension != ".csv" && extension != ".npz" && extension != ".jsonl") {
+    text::refuse(out, "cannot hold a table", args.scene.path + " is a table", "name a file .csv, .npz or .jsonl");
+  }
+  if (args.triangulate || args.scene.divide || !args.encoding.empty()) {
+    text::refuse(std::filesystem::path(args.scene.path), "is a table, and flags for scenes are given",
+                 "a table has no faces", "leave them out");
+  }
+  files::require_not_read(out, std::vector<std::filesystem::path>{args.scene.path});
+  table::write(table::read(args.scene.path), out);
+  std::cout << "wrote " << text::printable(args.out) << '\n';
+  check_output(std::cout);
+  return 0;
+}
+
 int run(const ConvertArguments& args) {
   require_free_file(args.out, args.force);  // checked before anything that takes time
+  if (!table::kind_of(args.scene.path).empty()) return convert_table(args);
   const Scene scene = args.load();
   print_warnings(scene.warnings());
   const SceneFiles result = scene_files(scene, args.out, args.chosen_encoding());
@@ -68,10 +94,11 @@ int run(const ConvertArguments& args) {
 
 Command add_convert(CLI::App& app) {
   auto args = std::make_shared<ConvertArguments>();
-  CLI::App* command = app.add_subcommand("convert", "Write a scene in another format");
+  CLI::App* command = app.add_subcommand("convert", "Write a scene, or a table, in another format");
   args->scene.add_to(*command);
   args->scene.add_divide_to(*command);
-  command->add_option("OUT", args->out, "File to write: .obj, .ply, .stl, .off or .vs3")
+  command
+      ->add_option("OUT", args->out, "File to write: .obj, .ply, .stl, .off or .vs3; of a table: .csv, .npz or .jsonl")
       ->required()
       ->check(flags::is_written(flags::Format::kScene, flags::Beside::kMaterials));
   command->add_flag("--triangulate", args->triangulate, "Cut all faces into triangles, at their own vertices");

@@ -134,5 +134,22 @@ TEST_F(ConvertCommand, AFullDiskLeavesNeitherFile) {
   EXPECT_GT(fs::file_size(path("s.obj")), 400U);
 }
 
+// Back to the same bytes by either way.
+TEST_F(ConvertCommand, TakesTablesAndGivesThemBack) {
+  const std::string csv = path("t.csv");
+  ASSERT_EQ(
+      validation::run_exactff({"truth", room_, "--on", "floor", "--grid", "3x3", "--gradient", "-o", csv}).exit_code,
+      0);
+  for (const char* name : {"t.npz", "t.jsonl"}) {
+    EXPECT_EQ(convert({csv, path(name)}).exit_code, 0);
+    EXPECT_EQ(convert({path(name), path("back.csv"), "--force"}).exit_code, 0);
+    EXPECT_EQ(validation::text_of(path("back.csv")), validation::text_of(csv));
+  }
+  EXPECT_EQ(convert({csv, path("t.obj")}).exit_code, 2);
+  EXPECT_EQ(convert({csv, csv, "--force"}).exit_code, 2);
+  EXPECT_EQ(convert({csv, path("u.npz"), "--triangulate"}).exit_code, 2);
+  EXPECT_FALSE(fs::exists(path("u.npz")));
+}
+
 }  // namespace
 }  // namespace exactff

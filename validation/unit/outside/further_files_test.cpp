@@ -153,5 +153,12 @@ TEST_F(FurtherFiles, HaveNoNumberWhereAValueIsNotCertified) {
   EXPECT_NE(text_of(path("t.npy")).find("'shape': (2, 2), }"), std::string::npos);
 }
 
+TEST_F(FurtherFiles, AreRefusedIfColumnsOfTheHeadAreMissing) {
+  std::string text = text_of(directory_.write("t.csv", kSmallHead + "a,s,0,0,0,0,0,0,zero\na,t,0,0,0,0,0,0,zero\n"));
+  text.replace(text.rfind("receiver,"), 8, "id");
+  (void)directory_.write("t.csv", text);
+  EXPECT_THROW(truth::write_npy(path("t.csv"), path("t.npy")), InputError);
+}
+
 }  // namespace
 }  // namespace exactff
