@@ -123,7 +123,7 @@ class SharedLoop {
       kernel::poll();
       body(i);
       done_ = i + 1;
-      if (Clock::now() - reported < kBetweenReports) continue;
+      if (loop_.largest_block > 1 && Clock::now() - reported < kBetweenReports) continue;
       report({});
       reported = Clock::now();
     }

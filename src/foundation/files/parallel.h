@@ -100,9 +100,10 @@ struct Loop {
 using Body = std::function<void(std::size_t)>;
 
 // Calls make_body() once for each thread, and its result for every index below loop.count. A loop of few steps, or for
-// one thread, runs on the calling thread. Otherwise, the calling thread only waits. It reports progress and asks
-// hooks.cancelled about 50 times a second, between steps of its own or while it waits. When all threads have ended, the
-// first exception is rethrown; so is Cancelled. What the bodies call asks as WorkerPool says.
+// one thread, runs on the calling thread, which reports progress and asks hooks.cancelled after each step, or about 50
+// times a second if steps are short. Otherwise, the calling thread only waits, and does so about 50 times a second.
+// When all threads have ended, the first exception is rethrown; so is Cancelled. What the bodies call asks as
+// WorkerPool says.
 void parallel_for(const Loop& loop, const Hooks& hooks, const std::function<Body()>& make_body);
 
 // The same where threads need no memory.

@@ -99,8 +99,8 @@ TEST_F(TruthCommand, TwoAtOnceAreRefused) {
     EXPECT_EQ(second.wait(), 2);
     EXPECT_EQ(second.error(),
               "exactff: " + journal_.string() +
-                  ": another process is working on it (two processes would compute the same rows and damage each "
-                  "other's file); wait for the other process, or name another file with -o\n");
+                  ": another process is working on it (two processes would compute the same values and damage each "
+                  "other's file); wait for the other process, or give another name with -o\n");
   }
   first.send(SIGKILL);
   EXPECT_EQ(first.wait(), 128 + SIGKILL);
