@@ -18,6 +18,17 @@ namespace {
 using validation::run_program;
 using validation::TemporaryDirectory;
 
+TEST(StressClosedForm, TurnsWithTheAxesAndTheNormal) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (double sign : {-1.0, 1.0}) {
+      const double length = 3.0 * sign;
+      ClosedForm form({axis == 0 ? length : 0, axis == 1 ? length : 0, axis == 2 ? length : 0});
+      form.add({axis, Rational(sign), {0, 1}, {0, 1}});
+      EXPECT_EQ(form.value().decimals(30), "0.138531605994892996780769708634") << axis << ' ' << sign;
+    }
+  }
+}
+
 TEST(StressDoubleFormulas, LoseDigitsInTheKnownOrder) {
   const double h = 1e-2;
   const Vec3 x{100, 37, -50};
