@@ -28,9 +28,9 @@ struct JournalForm {
 // that open, close and sync it may be called from any thread.
 class JournalFile {
  public:
-  // Opens and locks the file. Damaged blocks count as not done. Throws InputError, and changes nothing, if the file
-  // cannot be written, if another process uses it, if it is not a journal, or if it holds work of another request or
-  // version, or any work at all, and `existing` does not say to replace it, or to continue. `note`: notes for the user.
+  // Opens and locks the file. Damaged blocks count as not done. Throws InputError, and leaves the file as it is, if it
+  // cannot be written, if another process uses it, or if exactff did not write it; unless `existing` says to replace
+  // it, also if it is of another version or request; and for kRefuse if it holds any work. `note`: notes for the user.
   JournalFile(const std::filesystem::path& path, JournalForm form, Existing existing,
               const std::function<void(const std::string&)>& note);
   // Removes a journal without blocks, since it has no use.
