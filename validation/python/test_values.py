@@ -91,7 +91,7 @@ def test_unit_normals_are_those_of_truth_files(tmp_path):
     rows = truth_rows(tmp_path / "t.csv")
     unit = np.stack([column(rows, name, 1)[:, 0] for name in ("ux", "uy", "uz")], axis=1)
     assert same_bits(at.unit_normals, unit) and np.allclose((unit**2).sum(axis=1), 1)
-    assert "# normals: nx,ny,nz are exact and of any length" in (tmp_path / "t.csv").read_text()
+    assert "\"name\":\"nx\",\"type\":\"number\",\"unit\":\"of any length\"" in (tmp_path / "t.csv").read_text()
 
 
 def test_threads_and_size_of_a_batch_change_no_bit():

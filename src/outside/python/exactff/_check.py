@@ -204,7 +204,7 @@ class Scoreboard:
         return f"<exactff.Scoreboard: {passed} of {len(self.reports)} passed>"
 
 
-def scoreboard(truth: _Path, candidates: Sequence[_Path], *, folder: Optional[_Path] = None,
+def scoreboard(truth: Path, candidates: Sequence[Path], *, folder: Optional[Path] = None,
                seconds: Optional[Mapping[str, float]] = None, max_abs: Optional[float] = None,
                max_rel: Optional[float] = None, rms: Optional[float] = None, eps_b: Optional[float] = None,
                quantiles: Optional[Mapping[float, float]] = None, per_source: bool = False,
