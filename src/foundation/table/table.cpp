@@ -141,7 +141,7 @@ std::vector<std::string> lines_of(const ParsedHead& head) {
 std::string head_line(std::string_view kind, const Head& head, std::span<const Column> columns) {
   ordered_json json = {{"exactff", kVersion}, {"table", kind}};
   for (const auto& [name, value] : head.values()) {
-    std::visit([&](const auto& one) { json[name] = one; }, value);
+    std::visit([&, &key = name](const auto& one) { json[key] = one; }, value);
   }
   ordered_json& list = json["columns"] = ordered_json::array();
   for (const Column& column : columns) list.push_back(json_of(column));
