@@ -195,5 +195,14 @@ TEST_F(CheckCommand, NamesMatchInLatin1AndInUtf8) {
   }
 }
 
+TEST_F(CheckCommand, JudgesSomeRowsOnRequest) {
+  const std::string mine = directory_.write("some.csv", "receiver,source,value\nb,t,0.25\n").string();
+  EXPECT_EQ(check(mine, {"--max-abs", "0"}).exit_code, 2);
+  const ProgramRun run = check(mine, {"--max-abs", "0", "--partial"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_HOLDS(run.output, "(exact, 6 rows)");
+  EXPECT_HOLDS(run.output, "(1 row judged)");
+}
+
 }  // namespace
 }  // namespace exactff

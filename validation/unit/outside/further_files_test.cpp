@@ -137,5 +137,17 @@ TEST_F(FurtherFiles, HaveNoNumberWhereAValueIsNotCertified) {
   EXPECT_NE(text_of(path("t.npy")).find("'shape': (2, 2), }"), std::string::npos);
 }
 
+TEST_F(FurtherFiles, AreRefusedForFilesThatHoldOtherRows) {
+  const std::string head = "# exactff\nreceiver,source,exact,lower,upper,radiosity_r,radiosity_g,radiosity_b,status\n";
+  for (const char* rows : {"a,s,0,0,0,0,0,0,zero\na,t,0,0,0,0,0,0,zero\nb,s,0,0,0,0,0,0,zero\n",  // one is missing
+                           "a,s,0,0,0,0,0,0,zero\na,t,0,0,0,0,0,0,zero\nb,u,0,0,0,0,0,0,zero\nb,s,0,0,0,0,0,0,zero\n",
+                           "a,s,0,0,0,0,0,0\n", "a,s,x,0,0,0,0,0,zero\n", "a,s,0,0,0,0,0,0,zer\n", ""}) {
+    const fs::path file = directory_.write("t.csv", head + rows);
+    EXPECT_THROW(truth::write_npy(file, path("t.npy")), InputError) << rows;
+    EXPECT_THROW(truth::write_npz(file, path("t.npy")), InputError) << rows;
+    EXPECT_FALSE(fs::exists(path("t.npy"))) << rows;
+  }
+}
+
 }  // namespace
 }  // namespace exactff

@@ -114,5 +114,11 @@ TEST(Baseline, OfEverySourceIsKeptByEverySource) {
   EXPECT_EQ(held.improvements.front().source, "s");
 }
 
+TEST(Baseline, WithInfiniteErrorsImprovesToFiniteOnes) {
+  const Ratchet ratchet(judged({0.0}, {0.125}));
+  EXPECT_TRUE(ratchet.held(judged({0.0}, {0.125})).passed());
+  EXPECT_EQ(ratchet.held(judged({0.0}, {0.0})).improvements[1].recorded, kInfinity);
+}
+
 }  // namespace
 }  // namespace exactff::check
