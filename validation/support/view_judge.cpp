@@ -16,10 +16,6 @@ using kernel::ExactVec3;
 using kernel::Integer;
 using whole_view::ViewEdges;
 
-ExactSource whole_patch(const Scene& scene, std::size_t patch) {
-  return {scene, Selection{.patch = static_cast<PatchId>(patch), .face = {}, .scene = scene.id()}};
-}
-
 const SeenPatch* find_patch(const WholeView& seen, std::size_t patch) {
   const auto at = std::ranges::find(seen.patches, static_cast<PatchId>(patch), &SeenPatch::patch);
   return at == seen.patches.end() ? nullptr : &*at;
@@ -28,7 +24,8 @@ const SeenPatch* find_patch(const WholeView& seen, std::size_t patch) {
 void expect_patches_as_the_solver(const Scene& scene, const Receiver& receiver) {
   const WholeView seen = view(scene, receiver);
   for (std::size_t p = 0; p < scene.patches().size(); ++p) {
-    const FormFactor f = exact_form_factor(scene, receiver, whole_patch(scene, p));
+    const Selection whole{.patch = static_cast<PatchId>(p), .face = {}, .scene = scene.id()};
+    const FormFactor f = exact_form_factor(scene, receiver, ExactSource(scene, whole));
     const SeenPatch* patch = find_patch(seen, p);
     expect_same_bits(patch ? patch->form_factor : ViewShare{}, f, scene.patches()[p].name);
     if (patch != nullptr && !patch->stacked) expect_same_bits(patch->share, f, scene.patches()[p].name);

@@ -9,7 +9,6 @@
 
 namespace exactff::validation {
 
-[[nodiscard]] ExactSource whole_patch(const Scene& scene, std::size_t patch);
 // Null if nothing of the patch is seen.
 [[nodiscard]] const SeenPatch* find_patch(const WholeView& seen, std::size_t patch);
 

@@ -160,5 +160,16 @@ TEST_F(FurtherFiles, AreRefusedIfColumnsOfTheHeadAreMissing) {
   EXPECT_THROW(truth::write_npy(path("t.csv"), path("t.npy")), InputError);
 }
 
+TEST_F(FurtherFiles, AreRefusedForFilesThatHoldOtherRows) {
+  for (const char* rows : {"a,s,0,0,0,0,0,0,zero\na,t,0,0,0,0,0,0,zero\nb,s,0,0,0,0,0,0,zero\n",  // one is missing
+                           "a,s,0,0,0,0,0,0,zero\na,t,0,0,0,0,0,0,zero\nb,u,0,0,0,0,0,0,zero\nb,s,0,0,0,0,0,0,zero\n",
+                           "a,s,0,0,0,0,0,0\n", "a,s,x,0,0,0,0,0,zero\n", "a,s,0,0,0,0,0,0,zer\n", ""}) {
+    const fs::path file = directory_.write("t.csv", kSmallHead + rows);
+    EXPECT_THROW(truth::write_npy(file, path("t.npy")), InputError) << rows;
+    EXPECT_THROW(truth::write_npz(file, path("t.npy")), InputError) << rows;
+    EXPECT_FALSE(fs::exists(path("t.npy"))) << rows;
+  }
+}
+
 }  // namespace
 }  // namespace exactff

@@ -145,5 +145,11 @@ TEST_F(GradientCommand, CheckComparesAColumnWithoutTheKinks) {
   EXPECT_EQ(check(std::to_string(std::stod(x) + 1e-3)), 1);
 }
 
+TEST_F(GradientCommand, TruthRefusesTheGradientOfTheSky) {
+  const ProgramRun run = run_program(EXACTFF_PROGRAM, {"truth", scene, "--on", "floor", "--grid", "2x2", "--source",
+                                                       "light,sky", "--gradient", "-o", "-"});
+  EXPECT_EQ(run.exit_code, 2);
+}
+
 }  // namespace
 }  // namespace exactff

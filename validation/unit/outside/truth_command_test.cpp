@@ -193,5 +193,11 @@ TEST_F(TruthCommand, OneOfManyWithoutMpiIsRefused) {
   EXPECT_FALSE(fs::exists(file_));
 }
 
+TEST_F(TruthCommand, SlowRowsAreLogged) {
+  const RunningProgram running = start("2x1", {"--slow", "0"});
+  EXPECT_EQ(running.wait(), 0);
+  EXPECT_TRUE(running.error().starts_with("slow: receiver 'r1c1' on 'floor', source 'light' took ")) << running.error();
+}
+
 }  // namespace
 }  // namespace exactff

@@ -156,5 +156,13 @@ TEST_F(ViewCommand, IsNotCertifiedUnderALowCap) {
   EXPECT_EQ(run.exit_code, 3) << run.output;
 }
 
+TEST_F(ViewCommand, BothEnginesAgree) {
+  EXPECT_EQ(up({"--engine", "both", "--plain"}).output, up({"--plain"}).output);
+  EXPECT_EQ(run_program(EXACTFF_PROGRAM, {"view", EXACTFF_DATA_DIR "/scenes/cornell_box.obj", "--at", "200", "0", "400",
+                                          "--normal", "0", "1", "0", "--on", "floor", "--engine", "both"})
+                .exit_code,
+            0);
+}
+
 }  // namespace
 }  // namespace exactff

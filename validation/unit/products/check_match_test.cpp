@@ -120,5 +120,14 @@ TEST(MatchByPosition, RefusesTwoValuesForOneRow) {
                "receiver 'b' of source 's' already has a value (line 2)");
 }
 
+TEST(MatchByPosition, NeedsCoordinatesOfTheTruth) {
+  EXPECT_HOLDS(complaint([] {
+                 (void)match(truth_of("receiver,exact\na,1\n"),
+                             candidate_of("x,y,z,value\n0,0,0,1\n", {}, MatchBy::kPosition),
+                             {.by = MatchBy::kPosition});
+               }),
+               "has no columns x, y and z");
+}
+
 }  // namespace
 }  // namespace exactff::check

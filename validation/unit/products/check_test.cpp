@@ -211,5 +211,22 @@ TEST(Criteria, WithARelativeFloorForgiveSmallTruths) {
   EXPECT_TRUE(judged({0.0, 1e-9}, {1e-6, 1e-6}, {.max_rel = 1e-3, .relative_floor = 1e-3}).passed());
 }
 
+TEST(CheckStatistics, AreOfEverySource) {
+  const Report report = judge(truth_of_two({0.5, 0.5}, {0.25, 0.25}), std::vector{0.5, 0.5, 0.5, 0.25}, {});
+  EXPECT_EQ(report.sources, (std::vector<std::string>{"s", "t"}));
+  EXPECT_EQ(report.by_source[0].absolute.max, 0.0);
+  EXPECT_EQ(report.by_source[1].absolute.max, 0.25);
+  EXPECT_EQ(report.by_source[1].rows, 2U);
+}
+
+TEST(ErrorHistogram, GathersWhatIsFarBelowInItsFirstBin) {
+  const Histogram h = histogram(judged({0.0, 0.0, 0.0}, {5e-324, 1e-200, 1.0}), 1, 10);
+  ASSERT_EQ(h.bins.size(), 10U);
+  EXPECT_EQ(h.bins.front().count, 2U);
+  EXPECT_EQ(h.bins.back().count, 1U);
+  EXPECT_TRUE(histogram(judged({0.5}, {0.5})).bins.empty());
+  EXPECT_EQ(histogram(judged({0.0}, {1.7e308})).bins.size(), 1U);
+}
+
 }  // namespace
 }  // namespace exactff::check

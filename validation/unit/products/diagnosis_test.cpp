@@ -417,5 +417,11 @@ TEST(DarkSources, AreNoneWhereTheReceiversPatchIsOneOfManySources) {
   EXPECT_TRUE(warnings_of_dark_sources(scene, receivers, all).empty());
 }
 
+TEST(Diagnosis, NormalsChangeNoValue) {
+  const std::string vertices = "v 0 0 1\nv 1 0 1\nv 1 1 1\nvn 0 0 1\nvn 0 0 -1\ng s\n";
+  EXPECT_EQ(read(vertices + "f 3//1 2//1 1//1\n").hash(), read(vertices + "f 3//2 2//2 1//2\n").hash());
+  EXPECT_EQ(read(vertices + "f 3//1 2//1 1//1\n").hash(), read(vertices + "f 3 2 1\n").hash());
+}
+
 }  // namespace
 }  // namespace exactff::slips

@@ -608,5 +608,13 @@ TEST_F(MatrixFilesOfTheCommand, TellsWhyEntriesAreWider) {
   EXPECT_EQ(told, "");
 }
 
+TEST(Matrix, TwoSidedRefusesTakenNames) {
+  PlainScene taken;
+  add(taken, "wall", square(1.0, 0.0));
+  add(taken, "wall (back)", square(1.0, 1.0));
+  const Scene with_name = generate::build(taken);
+  EXPECT_THROW((void)with_two_sided(with_name, std::vector{with_name.select("wall")}), InputError);
+}
+
 }  // namespace
 }  // namespace exactff::matrix

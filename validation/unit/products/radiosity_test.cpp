@@ -498,5 +498,12 @@ TEST_F(RadiosityCommand, BacksOfTwoSidedPatchesEmit) {
   EXPECT_NE(both.output.find("above (back)\tred\t8\t8\t8\t"), std::string::npos) << both.output;
 }
 
+TEST(Radiosity, NeedsTheFactorsBetweenAllPatches) {
+  const Scene scene = generate::build(plates());
+  const std::vector<Selection> patches = patches_of(scene);
+  const matrix::Options options{.factors = {.accuracy = 0.1}, .backs = true, .open = true};
+  EXPECT_THROW((void)solve(scene, matrix::compute(scene, patches, {&patches[0], 1}, options)), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace exactff::radiosity

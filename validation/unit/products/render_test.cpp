@@ -379,13 +379,10 @@ TEST(DefaultCamera, InAClosedRoomShowsALampAndTheFurniture) {
   EXPECT_GT(shown_of(hall, default_camera(hall, {}, {320, 240}), {320, 240}).lamp, 10);
 }
 
-TEST(DefaultCamera, KeepsAnAngleThatIsGiven) {
+TEST(DefaultCamera, KeepsWhatIsGiven) {
   const Scene room = models::make_scene("closed-room");
   EXPECT_EQ(default_camera(room, {.fov = 50.0}, {16, 16}).fov, 50.0);
   EXPECT_EQ(default_camera(cornell_box(), {.fov = 50.0}, {16, 16}).fov, 50.0);
-}
-
-TEST(DefaultCamera, KeepsAHeightThatIsGiven) {
   EXPECT_EQ(default_camera(cornell_box(), {.ortho = 100.0}, {16, 16}).ortho, 100.0);
 }
 
@@ -485,6 +482,13 @@ TEST(Strip, HasThePicturesSideBySideAndNothingElse) {
   EXPECT_EQ(std::ranges::count(sheet.bytes, 255), 3 * (6 * 25 + 40 * 5));
   EXPECT_EQ(sheet.bytes.front(), 9);
   EXPECT_EQ(sheet.bytes.back(), 99);
+}
+
+TEST(ImageKind, GoesByTheExtension) {
+  EXPECT_EQ(image_kind("a/b.exr"), ImageKind::kExr);
+  EXPECT_EQ(image_kind("B.PNG"), ImageKind::kPng);
+  EXPECT_THROW((void)image_kind("a.jpg"), InputError);
+  EXPECT_THROW((void)image_kind("a"), InputError);
 }
 
 }  // namespace

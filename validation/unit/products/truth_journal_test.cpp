@@ -237,5 +237,10 @@ TEST_F(Truth, TheFileGoesWhereALinkLeads) {
   EXPECT_GT(fs::file_size(directory_.path() / "target.csv"), 100U);
 }
 
+TEST_F(Truth, ARunThatFinishedNoRowLeavesNothing) {
+  interrupt(request(2), 0);
+  expect_only({});
+}
+
 }  // namespace
 }  // namespace exactff::truth

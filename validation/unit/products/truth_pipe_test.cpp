@@ -121,5 +121,13 @@ TEST(UnitNormal, IsTheNearestOfEveryNormal) {
   }
 }
 
+TEST(UnitNormal, IsKeptFromRowToRow) {
+  truth::UnitNormal unit;
+  EXPECT_EQ(unit.of({0, 0, 1}), (Vec3{0, 0, 1}));
+  EXPECT_EQ(unit.of({0, 2, 0}), (Vec3{0, 1, 0}));
+  EXPECT_EQ(unit.of({0, 2, 0}), (Vec3{0, 1, 0}));
+  EXPECT_EQ(unit.of({5, 0, 0}), (Vec3{1, 0, 0}));
+}
+
 }  // namespace
 }  // namespace exactff

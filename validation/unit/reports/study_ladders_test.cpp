@@ -153,5 +153,15 @@ TEST(SpreadOrder, IsAPermutationWhoseBeginningsAreSpread) {
   }
 }
 
+TEST(ParseLadder, RefusesTwoSettingsWithSeveralValues) {
+  const std::string said = complaint([] { (void)parse_ladder("nettle:rays=1|4,splits=1|2"); });
+  EXPECT_NE(said.find("'rays' and 'splits' of nettle both have several values"), std::string::npos) << said;
+}
+
+TEST(ParseLadder, RefusesSeveralSeeds) {
+  const std::string said = complaint([] { (void)parse_ladder("area-sampling:seed=1|2"); });
+  EXPECT_NE(said.find("--method-seeds"), std::string::npos) << said;
+}
+
 }  // namespace
 }  // namespace exactff::study

@@ -104,5 +104,11 @@ TEST(SweepBudget, DropsTheDearestSettingsAndKeepsTheBase) {
   EXPECT_TRUE(counts.contains(1) && counts.contains(9) && counts.size() > 3) << "some budgets are in between";
 }
 
+TEST(Settings, RepetitionsAreDropped) {
+  Sweeps sweeps{{0.1, 0.1}, {0.0}, {4}, {1}, {SamplePattern::kJittered}, {Variant::kMended}};
+  complete(sweeps, {});
+  EXPECT_EQ(sweeps.eps_b.size(), 1U);
+}
+
 }  // namespace
 }  // namespace exactff::study
