@@ -325,7 +325,7 @@ TEST_F(SolutionFiles, WithPatchesWithoutAreaAreRefused) {
   generate::PlainScene plain = plain_plates();
   plain.add_ring(plain.patch("thread"), {{0, 0, 2}, {1, 0, 2}, {1, 0, 2}});
   const Scene scene = generate::build(plain);
-  const std::string text = csv_text(scene, solve(scene, {.factors = {.accuracy = 1e-2}}), {});
+  const std::string text = csv_of(scene, solve(scene, {.factors = {.accuracy = 1e-2}}));
   EXPECT_NE(said(scene, replaced(text, "ceiling,green", "thread,green")).find("of 'thread', which has no area"),
             std::string::npos);
 }

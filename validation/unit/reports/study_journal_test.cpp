@@ -457,21 +457,5 @@ TEST(ResumedStudy, OfAnotherRequestTakesNothing) {
   EXPECT_LT(journal.size(), both + 20 + swept_study.methods.cells.size()) << "the exact method is the same";
 }
 
-TEST_F(StudyJournal, IsNotMadeOfAFileThatIsNone) {
-  for (const Existing existing : {Existing::kRefuse, Existing::kResume, Existing::kReplace}) {
-    put("Dear reader,\n");
-    EXPECT_NE(refusal(existing).find("exactff did not write it"), std::string::npos);
-    EXPECT_EQ(validation::text_of(file_), "Dear reader,\n");
-  }
-}
-
-TEST_F(StudyJournal, ThatIsAddedToAgainHasTheLastBytes) {
-  Journal journal(file_, Existing::kRefuse);
-  journal.add("a", "old");
-  journal.add("a", "newer");
-  EXPECT_EQ(journal.find("a"), "newer");
-  EXPECT_EQ(journal.size(), 1U);
-}
-
 }  // namespace
 }  // namespace exactff::study
