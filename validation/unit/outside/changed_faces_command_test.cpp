@@ -150,5 +150,16 @@ TEST_F(ChangedFaces, EveryCommandTellsOfFacesThatHideItsPoints) {
   }
 }
 
+TEST_F(ChangedFaces, AreInTheHeaderOfATruthFile) {
+  EXPECT_EQ(truth(kBoth).exit_code, 0);
+  const std::string text = text_of(truth_);
+  EXPECT_NE(text.find("\"flipped\":[\"lamp\"],\"transparent\":[\"pane\"],\"receivers\":"), std::string::npos)
+      << text.substr(0, 600);
+  EXPECT_EQ(text.find(",zero\n"), std::string::npos);
+  EXPECT_EQ(truth({}).exit_code, 0);
+  EXPECT_EQ(text_of(truth_).find("flipped"), std::string::npos);
+  EXPECT_EQ(text_of(truth_).find("transparent"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace exactff

@@ -95,6 +95,24 @@ TEST_F(TruthPipe, ATruthFileMayNameTheReceivers) {
   EXPECT_EQ(std::ranges::count(piped, '\n'), 2 + 25) << piped;
 }
 
+TEST_F(TruthPipe, UnitNormalsAreFurtherColumns) {
+  const std::string flags = "--on left,floor --grid 2x2 --source light -o - ";
+  (void)directory_.write("plain.csv", shell(truth_ + flags));
+  (void)directory_.write("with.csv", shell(truth_ + flags + "--unit-normals"));
+  const table::Table plain = table::read(directory_.path() / "plain.csv");
+  const table::Table with = table::read(directory_.path() / "with.csv");
+  EXPECT_FALSE(plain.column("ux"));
+  EXPECT_EQ(plain.head(), with.head());
+  ASSERT_EQ(plain.rows(), with.rows());
+  for (std::size_t row = 0; row < with.rows(); ++row) {
+    const auto component = [&](const char* name) { return with.numbers(with.column(name).value())[row]; };
+    EXPECT_NEAR(std::hypot(component("ux"), component("uy"), component("uz")), 1.0, 1e-15);
+    for (std::size_t i = 0; i < plain.columns().size(); ++i) {
+      EXPECT_EQ(plain.at(row, i), with.at(row, with.column(plain.columns()[i].name).value()));
+    }
+  }
+}
+
 // --- the unit normal -----------------------------------------------------------------------------------------
 
 TEST(UnitNormal, IsCorrectlyRounded) {
