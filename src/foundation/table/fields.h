@@ -29,46 +29,47 @@ struct Field {
   Set set = nullptr;  // not for columns that follow from others
 };
 
-// A field that is a member of the row: a double, a whole number, a bool or a text.
+// How a member of the row becomes a cell, and back: a double, a whole number, a bool or a text.
+template <auto Member, class Row>
+struct MemberCell {
+  using Value = std::remove_cvref_t<decltype(std::declval<Row&>().*Member)>;
+  static constexpr bool kIsFlag = std::same_as<Value, bool>, kIsCount = std::integral<Value> && !kIsFlag,
+                        kIsNumber = std::same_as<Value, double>;
+  static constexpr Type kType = kIsFlag     ? Type::kFlag
+                                : kIsCount  ? Type::kCount
+                                : kIsNumber ? Type::kNumber
+                                            : Type::kText;
+
+  static Cell get(const Row& row) {
+    if constexpr (kIsCount) {
+      return static_cast<std::uint64_t>(row.*Member);
+    } else if constexpr (kIsFlag || kIsNumber) {
+      return row.*Member;
+    } else {
+      return std::string_view(row.*Member);
+    }
+  }
+  static bool set(Row& row, const Cell& cell) {
+    if constexpr (kIsCount) {
+      const std::uint64_t* const value = std::get_if<std::uint64_t>(&cell);
+      if (value != nullptr) row.*Member = static_cast<Value>(*value);
+      return value != nullptr && static_cast<std::uint64_t>(row.*Member) == *value;
+    } else if constexpr (kIsFlag || kIsNumber) {
+      const Value* const value = std::get_if<Value>(&cell);
+      if (value != nullptr) row.*Member = *value;
+      return value != nullptr;
+    } else {
+      const std::string_view* const value = std::get_if<std::string_view>(&cell);
+      if (value != nullptr) row.*Member = *value;
+      return value != nullptr;
+    }
+  }
+};
+
 template <auto Member, class Row>
 [[nodiscard]] Field<Row> member_field(Column column) {
-  using Value = std::remove_cvref_t<decltype(std::declval<Row&>().*Member)>;
-  if constexpr (std::same_as<Value, double>) {
-    column.type = Type::kNumber;
-  } else if constexpr (std::same_as<Value, bool>) {
-    column.type = Type::kFlag;
-  } else if constexpr (std::integral<Value>) {
-    column.type = Type::kCount;
-  } else {
-    column.type = Type::kText;
-  }
-  return {std::move(column),
-          [](const Row& row) -> Cell {
-            if constexpr (std::integral<Value> && !std::same_as<Value, bool>) {
-              return static_cast<std::uint64_t>(row.*Member);
-            } else if constexpr (std::same_as<Value, double> || std::same_as<Value, bool>) {
-              return row.*Member;
-            } else {
-              return std::string_view(row.*Member);
-            }
-          },
-          [](Row& row, const Cell& cell) {
-            return std::visit(
-                [&](const auto& value) {
-                  using Given = std::remove_cvref_t<decltype(value)>;
-                  if constexpr (std::same_as<Given, std::uint64_t> && std::integral<Value>) {
-                    row.*Member = static_cast<Value>(value);
-                    return static_cast<std::uint64_t>(row.*Member) == value;
-                  } else if constexpr (std::same_as<Given, Value> ||
-                                       (std::same_as<Given, std::string_view> && std::same_as<Value, std::string>)) {
-                    row.*Member = Value(value);
-                    return true;
-                  } else {
-                    return false;
-                  }
-                },
-                cell);
-          }};
+  column.type = MemberCell<Member, Row>::kType;
+  return {std::move(column), &MemberCell<Member, Row>::get, &MemberCell<Member, Row>::set};
 }
 
 // All columns of one kind of table.

@@ -26,8 +26,13 @@ using Field = table::Field<SolutionFile::Row>;
 constexpr std::string_view kTableKind = "radiosity";
 constexpr const char* kAdvice = "use the file as `exactff radiosity` wrote it";
 
-// What is infinite or not known is an empty field.
-template <auto Of, double Otherwise>
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+// What an empty field means: what is infinite or not known is one.
+enum class Empty { kNone, kZero, kUnbounded };
+
+template <auto Of, Empty Meaning>
 Field number(std::string name, std::string unit, Strength strength) {
   return {{std::move(name), Type::kNumber, std::move(unit), strength},
           [](const SolutionFile::Row& row) -> Cell {
@@ -36,23 +41,21 @@ Field number(std::string name, std::string unit, Strength strength) {
           },
           [](SolutionFile::Row& row, const Cell& cell) {
             const double* const value = std::get_if<double>(&cell);
-            const_cast<double&>(Of(row)) = value != nullptr ? *value : Otherwise;
+            constexpr double kEmpty = Meaning == Empty::kZero ? 0.0 : Meaning == Empty::kNone ? kNone : kUnbounded;
+            const_cast<double&>(Of(row)) = value != nullptr ? *value : kEmpty;
             return true;
           }};
 }
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 template <auto Quantity>
 void add_bounded(std::vector<Field>& list, const std::string& name, const std::string& lower,
                  const std::string& upper) {
   using Row = SolutionFile::Row;
-  list.push_back(number<[](const Row& row) -> const double& { return (row.*Quantity).value; }, kNone>(
+  list.push_back(number<[](const Row& row) -> const double& { return (row.*Quantity).value; }, Empty::kNone>(
       name, "Ke", Strength::kEstimated));
-  list.push_back(number<[](const Row& row) -> const double& { return (row.*Quantity).lower; }, 0.0>(lower, "Ke",
-                                                                                                    Strength::kStated));
-  list.push_back(number<[](const Row& row) -> const double& { return (row.*Quantity).upper; }, kUnbounded>(
+  list.push_back(number<[](const Row& row) -> const double& { return (row.*Quantity).lower; }, Empty::kZero>(
+      lower, "Ke", Strength::kStated));
+  list.push_back(number<[](const Row& row) -> const double& { return (row.*Quantity).upper; }, Empty::kUnbounded>(
       upper, "Ke", Strength::kStated));
 }
 
@@ -82,11 +85,11 @@ table::Fields<SolutionFile::Row> columns(bool variation) {
   add_bounded<&Row::radiosity>(list, "radiosity", "lower", "upper");
   add_bounded<&Row::irradiance>(list, "irradiance", "irradiance_lower", "irradiance_upper");
   list.push_back(claim());
-  list.push_back(
-      number<[](const Row& row) -> const double& { return row.area; }, 0.0>("area", "area", Strength::kEstimated));
-  if (variation) {
-    list.push_back(number<[](const Row& row) -> const double& { return row.variation; }, kNone>("variation", "Ke",
+  list.push_back(number<[](const Row& row) -> const double& { return row.area; }, Empty::kZero>("area", "area",
                                                                                                 Strength::kEstimated));
+  if (variation) {
+    list.push_back(number<[](const Row& row) -> const double& { return row.variation; }, Empty::kNone>(
+        "variation", "Ke", Strength::kEstimated));
   }
   return {std::string(kTableKind), std::move(list)};
 }
