@@ -26,8 +26,8 @@ using Field = table::Field<SolutionFile::Row>;
 constexpr std::string_view kTableKind = "radiosity";
 constexpr const char* kAdvice = "use the file as `exactff radiosity` wrote it";
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoUpperBound = std::numeric_limits<double>::infinity();
 
 // What an empty field means: what is infinite or not known is one.
 enum class Empty { kNone, kZero, kUnbounded };
@@ -41,7 +41,7 @@ Field number(std::string name, std::string unit, Strength strength) {
           },
           [](SolutionFile::Row& row, const Cell& cell) {
             const double* const value = std::get_if<double>(&cell);
-            constexpr double kEmpty = Meaning == Empty::kZero ? 0.0 : Meaning == Empty::kNone ? kNone : kUnbounded;
+            constexpr double kEmpty = Meaning == Empty::kZero ? 0.0 : Meaning == Empty::kNone ? kNan : kNoUpperBound;
             const_cast<double&>(Of(row)) = value != nullptr ? *value : kEmpty;
             return true;
           }};
