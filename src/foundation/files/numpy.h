@@ -35,6 +35,7 @@ template <class T>
 // The inverse. Requires as many bytes as the values have.
 template <class T>
 void read_little_endian(std::string_view bytes, std::span<T> values) {
+  if (values.empty()) return;  // memcpy takes no null pointer
   std::memcpy(values.data(), bytes.data(), values.size_bytes());
   if constexpr (std::endian::native == std::endian::big) {
     for (T& value : values) std::reverse(reinterpret_cast<char*>(&value), reinterpret_cast<char*>(&value + 1));
