@@ -6,8 +6,8 @@
 //
 // A truth is any table that exactff wrote (table.h): a truth file, a matrix, radiosities. Its key columns identify the
 // rows, and one column of numbers is judged. The error of a value c is c - F*, where F* is the true value, correctly
-// rounded. If a row of the truth is not certified, F* is the point of its enclosure nearest to c, so that no candidate
-// is blamed for what is not known. The relative error is relative to F*; for F* = 0 it is 0 if c = 0 and infinite
+// rounded. If a row of the truth is not certified, F* is the point of its enclosure nearest to c, so a value within the
+// enclosure has no error. The relative error is relative to F*; for F* = 0 it is 0 if c = 0 and infinite
 // otherwise. The error in radiosity is the error times the largest rho_r B_s over the colour channels. This is the
 // quantity that eps_B bounds, row by row.
 #pragma once
@@ -284,7 +284,7 @@ struct Options {
 // A program in a scoreboard.
 struct Score {
   std::string program;            // the name of its file without the extension; all of it if two are equal
-  std::optional<double> seconds;  // that it took; whoever measured them sets them
+  std::optional<double> seconds;  // the run time of the program, if it is known
   Report report;
 };
 struct Scoreboard {

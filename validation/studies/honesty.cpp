@@ -14,6 +14,7 @@
 #include "kernel/expect.h"
 #include "models/random.h"
 #include "studies/honest_families.h"
+#include "text/phrases.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/prepared_patch.h"
 

@@ -174,7 +174,6 @@ class NpzReader {
  public:
   explicit NpzReader(const std::filesystem::path& path);
 
-  [[nodiscard]] bool has(std::string_view name) const { return find(name) != nullptr; }
   template <class T>
   [[nodiscard]] std::vector<T> numbers(std::string_view name) const {
     const std::string_view bytes = elements(name, kNpyType<T>);

@@ -20,7 +20,7 @@
 #include "flags/file_options.h"
 #include "flags/scene.h"
 #include "flags/values.h"
-#include "text/csv_row.h"
+#include "table/csv.h"
 #include "text/json_document.h"
 #include "text/names.h"
 #include "text/number_text.h"
@@ -129,7 +129,7 @@ void print_csv(const ViewArguments& args, const Scene& scene, const Receiver& re
             << '\n'
             << "name,share,lower,upper,status,form_factor,stacked\n";
   for_each_share(scene, seen, [&](const std::string& name, const ViewShare& share, const SeenPatch* patch) {
-    text::CsvRow row(std::cout);
+    table::CsvLine row(std::cout);
     row << text::printable(name) << number(args, share) << share.lower << share.upper << to_string(share.status)
         << (patch ? number(args, patch->form_factor) : std::string())
         << (patch ? std::string(is_stacked(*patch) ? "yes" : "no") : std::string());

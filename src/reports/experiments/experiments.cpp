@@ -65,7 +65,7 @@ TableWriter::TableWriter(std::string_view about, std::initializer_list<std::stri
     out_ << "# " << rest.substr(0, end) << '\n';
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
-  text::CsvRow names(out_);
+  table::CsvLine names(out_);
   for (const std::string_view name : columns) names << name;
 }
 

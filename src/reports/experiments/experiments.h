@@ -21,7 +21,7 @@
 #include "page/chapter.h"
 #include "page/gnuplot.h"
 #include "study/settings.h"
-#include "text/csv_row.h"
+#include "table/csv.h"
 
 namespace exactff::experiments {
 
@@ -86,7 +86,7 @@ class Bench {
 class TableWriter {
  public:
   TableWriter(std::string_view about, std::initializer_list<std::string_view> columns);
-  [[nodiscard]] text::CsvRow row() { return text::CsvRow(out_); }
+  [[nodiscard]] table::CsvLine row() { return table::CsvLine(out_); }
   [[nodiscard]] CsvFile finish(std::string file, std::string holds) const;
 
  private:

@@ -7,7 +7,7 @@
 #include "report/verdicts.h"
 #include "study/settings.h"
 #include "study/statistics.h"
-#include "text/csv_row.h"
+#include "table/csv.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "vtk/vtk.h"
@@ -71,7 +71,7 @@ std::string column_name(std::string_view words) {
 constexpr std::string_view kSettingColumns = "setting,variant,pattern,seed,eps_b,eps_a,rays_per_leaf";
 
 // Setting numbers start at 1.
-void put_setting(text::CsvRow& row, const Study& study, std::size_t k) {
+void put_setting(table::CsvLine& row, const Study& study, std::size_t k) {
   const AdaptiveOptions& s = study.settings[k];
   row << std::uint64_t{k + 1} << to_string(s.variant) << to_string(s.pattern) << s.seed << s.eps_b << s.eps_a << s.rays;
 }
@@ -87,10 +87,10 @@ void write_exact(const Study& study, std::ostream& out) {
     for (std::size_t s = 0; s < study.request.sources.size(); ++s) {
       const ExactTerm& term = study.exact[i].terms[s];
       const Rgb b = scene.source_radiosity(study.request.sources[s]);
-      text::CsvRow(out) << receiver.id << on_name(study, receiver) << receiver.point << receiver.normal
-                        << scene.name_of(study.request.sources[s]) << term.value << term.lower << term.upper
-                        << to_string(term.status) << to_string(term.sight) << term.visible_fraction
-                        << rho.r * b.r * term.value << rho.g * b.g * term.value << rho.b * b.b * term.value;
+      table::CsvLine(out) << receiver.id << on_name(study, receiver) << receiver.point << receiver.normal
+                          << scene.name_of(study.request.sources[s]) << term.value << term.lower << term.upper
+                          << to_string(term.status) << to_string(term.sight) << term.visible_fraction
+                          << rho.r * b.r * term.value << rho.g * b.g * term.value << rho.b * b.b * term.value;
     }
   }
 }
@@ -109,7 +109,7 @@ void write_values(const Study& study, std::ostream& out) {
     const ExactRow& exact = study.exact[i];
     for (std::size_t k = 0; k < study.settings.size(); ++k) {
       const SampleRow& sample = study.samples[k][i];
-      text::CsvRow row(out);
+      table::CsvLine row(out);
       row << receiver.id << on_name(study, receiver) << receiver.point << source;
       put_setting(row, study, k);
       row << exact.form_factor << sample.form_factor << sample.error << exact.radiosity.largest()
@@ -120,7 +120,7 @@ void write_values(const Study& study, std::ostream& out) {
   }
 }
 
-void put_statistics(text::CsvRow& row, const ErrorStatistics& s) { row << s.rms << s.mean << s.p99 << s.worst; }
+void put_statistics(table::CsvLine& row, const ErrorStatistics& s) { row << s.rms << s.mean << s.p99 << s.worst; }
 
 void write_summary(const Study& study, std::ostream& out) {
   write_head(study, out, "summary");
@@ -131,7 +131,7 @@ void write_summary(const Study& study, std::ostream& out) {
          "not_a_number\n";
   for (std::size_t k = 0; k < study.settings.size(); ++k) {
     const Summary& summary = study.summaries[k];
-    text::CsvRow row(out);
+    table::CsvLine row(out);
     put_setting(row, study, k);
     row << std::uint64_t{study.exact.size()};
     put_statistics(row, summary.form_factor);
@@ -149,15 +149,15 @@ void write_timings(const Study& study, std::ostream& out) {
   for (const std::size_t i : study.timed) {
     const Receiver& receiver = study.request.receivers[i];
     const std::string on = on_name(study, receiver);
-    text::CsvRow(out) << receiver.id << on << "exact" << study.exact[i].seconds;
+    table::CsvLine(out) << receiver.id << on << "exact" << study.exact[i].seconds;
     for (std::size_t k = 0; k < study.settings.size(); ++k) {
       const double seconds = study.samples[k][i].seconds;
-      if (!std::isnan(seconds)) text::CsvRow(out) << receiver.id << on << std::uint64_t{k + 1} << seconds;
+      if (!std::isnan(seconds)) table::CsvLine(out) << receiver.id << on << std::uint64_t{k + 1} << seconds;
     }
   }
 }
 
-void put_times(text::CsvRow& row, const TimeSummary& t) {
+void put_times(table::CsvLine& row, const TimeSummary& t) {
   row << t.median << t.mean << t.median_partly << t.mean_partly;
 }
 
@@ -169,7 +169,7 @@ void write_summary_timings(const Study& study, std::ostream& out) {
       << ",median,mean,median_partly_hidden,mean_partly_hidden,exact_median,exact_mean,exact_median_partly_hidden,"
          "exact_mean_partly_hidden\n";
   for (std::size_t k = 0; k < study.settings.size(); ++k) {
-    text::CsvRow row(out);
+    table::CsvLine row(out);
     put_setting(row, study, k);
     put_times(row, study.times[k]);
     put_times(row, study.exact_time);
@@ -191,7 +191,7 @@ const methods::Choice& choice_of(const Study& study, std::size_t ladder, std::si
   return study.methods.ladders[ladder].rungs[rung];
 }
 
-void put_choice(text::CsvRow& row, const methods::Choice& choice) {
+void put_choice(table::CsvLine& row, const methods::Choice& choice) {
   row << choice.method->name << choice.settings.text();
 }
 
@@ -201,7 +201,7 @@ void write_methods(const Study& study, std::ostream& out) {
       << ",seeds,receivers,work,rms,mean,p99,worst,rms_partly_hidden,rms_visible,rms_over_brightest,not_a_number\n";
   const double brightest = study::largest_radiosity(study);
   for (const MethodCell& cell : study.methods.cells) {
-    text::CsvRow row(out);
+    table::CsvLine row(out);
     put_choice(row, choice_of(study, cell.ladder, cell.rung));
     row << std::uint64_t{cell.seeds.size()} << std::uint64_t{study.methods.receivers.size()} << cell.work
         << cell.error.rms << cell.error.mean << cell.error.p99 << cell.error.worst << cell.error_partly.rms
@@ -216,7 +216,7 @@ void write_method_seeds(const Study& study, std::ostream& out) {
   for (const MethodCell& cell : study.methods.cells) {
     for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
       const ErrorStatistics e = study::error_statistics(cell.radiosity_errors[s]);
-      text::CsvRow row(out);
+      table::CsvLine row(out);
       put_choice(row, choice_of(study, cell.ladder, cell.rung));
       row << cell.seeds[s] << e.rms << e.mean << e.p99 << e.worst;
     }
@@ -230,7 +230,7 @@ void write_method_values(const Study& study, std::ostream& out) {
     for (std::size_t r = 0; r < study.methods.receivers.size(); ++r) {
       const std::size_t i = study.methods.receivers[r];
       const double exact = study.exact[i].form_factor, value = cell.values.front()[r];
-      text::CsvRow row(out);
+      table::CsvLine row(out);
       put_choice(row, choice_of(study, cell.ladder, cell.rung));
       row << cell.seeds.front() << study.request.receivers[i].id << exact << value << value - exact
           << cell.radiosity_errors.front()[r];
@@ -244,8 +244,8 @@ void write_slopes(const Study& study, std::ostream& out) {
   for (std::size_t l = 0; l < study.methods.ladders.size(); ++l) {
     const auto put = [&](const char* where, const std::optional<Slope>& slope) {
       if (!slope) return;
-      text::CsvRow(out) << study.methods.ladders[l].name << where << slope->exponent << slope->low << slope->high
-                        << std::uint64_t{slope->seeds} << std::uint64_t{slope->rungs};
+      table::CsvLine(out) << study.methods.ladders[l].name << where << slope->exponent << slope->low << slope->high
+                          << std::uint64_t{slope->seeds} << std::uint64_t{slope->rungs};
     };
     put("partly hidden", study.methods.slopes[l].partly);
     put("visible", study.methods.slopes[l].visible);
@@ -261,7 +261,7 @@ void write_fields(const Study& study, std::ostream& out) {
   out << '\n';
   for (std::size_t i = 0; i < study.exact.size(); ++i) {
     const ExactRow& exact = study.exact[i];
-    text::CsvRow row(out);
+    table::CsvLine row(out);
     row << study.request.receivers[i].id << study.request.receivers[i].point << to_string(exact.sight)
         << exact.visible_fraction << exact.radiosity.largest();
     row << (study.edge_distance.empty() ? std::nullopt : std::optional(study.edge_distance[i]));
@@ -278,7 +278,7 @@ void write_profile(const Study& study, std::ostream& out) {
   for (const Profile::Curve& curve : profile.others) out << ',' << text::csv_field(curve.name);
   out << '\n';
   for (std::size_t i = 0; i < profile.receivers.size(); ++i) {
-    text::CsvRow row(out);
+    table::CsvLine row(out);
     row << profile.position[i] << profile.receivers[i].point << profile.exact[i];
     for (const Profile::Curve& curve : profile.others) row << curve.radiosity[i];
   }
@@ -289,7 +289,7 @@ void write_method_timings(const Study& study, std::ostream& out) {
   if (const std::string drift = drift_warning(study); !drift.empty()) out << "# warning: " << drift << '\n';
   out << kCellColumns << ",seconds,seconds_partly_hidden,seconds_set_up,times_exact,lower_quartile,upper_quartile\n";
   for (const MethodCell& cell : study.methods.cells) {
-    text::CsvRow row(out);
+    table::CsvLine row(out);
     put_choice(row, choice_of(study, cell.ladder, cell.rung));
     row << cell.seconds << cell.seconds_partly << study.methods.setup_seconds[cell.ladder]
         << cell.seconds / exact_seconds(study) << cell.ratio_low << cell.ratio_high;

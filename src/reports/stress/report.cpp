@@ -12,7 +12,7 @@
 #include "page/output_folder.h"
 #include "page/page_text.h"
 #include "stress/stress.h"
-#include "text/csv_row.h"
+#include "table/csv.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 
@@ -25,9 +25,9 @@ using page::HtmlTable;
 using page::paragraph;
 using page::Points;
 using page::Series;
+using table::CsvLine;
 using text::counted;
 using text::counted_of;
-using text::CsvRow;
 using text::html;
 using enum HtmlTable::CellKind;
 
@@ -58,7 +58,7 @@ void write_values(const Report& report, std::ostream& out) {
   out << '\n';
   for (const FamilyResult& family : report.families) {
     for (const Row& r : family.rows) {
-      CsvRow row(out);
+      CsvLine row(out);
       row << family.family.name << r.stiffness << r.truth.decimals(kPrintedDigits).value_or(r.truth.midpoint())
           << to_string(family.family.evidence) << (r.agrees ? "yes" : "no") << exactff::to_string(r.status)
           << r.precision_bits << r.occluders << r.edges;
@@ -84,8 +84,8 @@ void write_summary(const Report& report, std::ostream& out) {
   for (const FamilyResult& family : report.families) {
     for (Method method : kMethods) {
       for (double threshold : kThresholds) {
-        CsvRow(out) << family.family.name << short_name_of(method) << threshold
-                    << usable_up_to(family, method, threshold) << family.rows.back().stiffness;
+        CsvLine(out) << family.family.name << short_name_of(method) << threshold
+                     << usable_up_to(family, method, threshold) << family.rows.back().stiffness;
       }
     }
   }
@@ -98,7 +98,7 @@ void write_timings(const Report& report, std::ostream& out) {
   out << '\n';
   for (const FamilyResult& family : report.families) {
     for (const Row& r : family.rows) {
-      CsvRow row(out);
+      CsvLine row(out);
       row << family.family.name << r.stiffness;
       for (Method method : kMethods) row << r.of(method).seconds;
     }

@@ -1,4 +1,4 @@
-"""What scenes are made of, receivers, and what `Scene.report` tells of both."""
+"""Materials, patches and receivers of scenes, and the findings of `Scene.report`."""
 
 from __future__ import annotations
 
