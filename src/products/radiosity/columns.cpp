@@ -42,7 +42,7 @@ Field number(std::string name, std::string unit, Strength strength) {
           [](SolutionFile::Row& row, const Cell& cell) {
             const double* const value = std::get_if<double>(&cell);
             constexpr double kEmpty = Meaning == Empty::kZero ? 0.0 : Meaning == Empty::kNone ? kNan : kNoUpperBound;
-            const_cast<double&>(Of(row)) = value != nullptr ? *value : kEmpty;
+            Of(row) = value != nullptr ? *value : kEmpty;
             return true;
           }};
 }
@@ -50,12 +50,11 @@ Field number(std::string name, std::string unit, Strength strength) {
 template <auto Quantity>
 void add_bounded(std::vector<Field>& list, const std::string& name, const std::string& lower,
                  const std::string& upper) {
-  using Row = SolutionFile::Row;
-  list.push_back(number<[](const Row& row) -> const double& { return (row.*Quantity).value; }, Empty::kNone>(
-      name, "Ke", Strength::kEstimated));
-  list.push_back(number<[](const Row& row) -> const double& { return (row.*Quantity).lower; }, Empty::kZero>(
-      lower, "Ke", Strength::kStated));
-  list.push_back(number<[](const Row& row) -> const double& { return (row.*Quantity).upper; }, Empty::kUnbounded>(
+  list.push_back(
+      number<[](auto& row) -> auto& { return (row.*Quantity).value; }, Empty::kNone>(name, "Ke", Strength::kEstimated));
+  list.push_back(
+      number<[](auto& row) -> auto& { return (row.*Quantity).lower; }, Empty::kZero>(lower, "Ke", Strength::kStated));
+  list.push_back(number<[](auto& row) -> auto& { return (row.*Quantity).upper; }, Empty::kUnbounded>(
       upper, "Ke", Strength::kStated));
 }
 
@@ -85,11 +84,11 @@ table::Fields<SolutionFile::Row> columns(bool variation) {
   add_bounded<&Row::radiosity>(list, "radiosity", "lower", "upper");
   add_bounded<&Row::irradiance>(list, "irradiance", "irradiance_lower", "irradiance_upper");
   list.push_back(claim());
-  list.push_back(number<[](const Row& row) -> const double& { return row.area; }, Empty::kZero>("area", "area",
-                                                                                                Strength::kEstimated));
+  list.push_back(
+      number<[](auto& row) -> auto& { return row.area; }, Empty::kZero>("area", "area", Strength::kEstimated));
   if (variation) {
-    list.push_back(number<[](const Row& row) -> const double& { return row.variation; }, Empty::kNone>(
-        "variation", "Ke", Strength::kEstimated));
+    list.push_back(number<[](auto& row) -> auto& { return row.variation; }, Empty::kNone>("variation", "Ke",
+                                                                                          Strength::kEstimated));
   }
   return {std::string(kTableKind), std::move(list)};
 }

@@ -17,12 +17,12 @@ using Field = table::Field<Row>;
 
 constexpr std::string_view kKink = "kink";
 
-// A number that `of` finds in the row.
+// A number that Of finds in the row, to read it or to set it.
 template <auto Of>
 Field number(std::string name, std::string unit, Strength strength) {
   return {{std::move(name), Type::kNumber, std::move(unit), strength},
           [](const Row& row) -> Cell {
-            const double value = Of(const_cast<Row&>(row));
+            const double value = Of(row);
             return std::isnan(value) ? Cell() : Cell(value);
           },
           [](Row& row, const Cell& cell) {
@@ -36,22 +36,23 @@ Field number(std::string name, std::string unit, Strength strength) {
 template <auto Member>
 void add_vector(std::vector<Field>& list, const std::array<std::string, 3>& names, const std::string& unit,
                 Strength strength) {
-  list.push_back(number<[](Row& row) -> double& { return (row.*Member).x; }>(names[0], unit, strength));
-  list.push_back(number<[](Row& row) -> double& { return (row.*Member).y; }>(names[1], unit, strength));
-  list.push_back(number<[](Row& row) -> double& { return (row.*Member).z; }>(names[2], unit, strength));
+  list.push_back(number<[](auto& row) -> auto& { return (row.*Member).x; }>(names[0], unit, strength));
+  list.push_back(number<[](auto& row) -> auto& { return (row.*Member).y; }>(names[1], unit, strength));
+  list.push_back(number<[](auto& row) -> auto& { return (row.*Member).z; }>(names[2], unit, strength));
 }
 
 // A column for each channel: "total_r", "total_g", "total_b".
 template <auto Member>
 void add_channels(std::vector<Field>& list, const std::string& name, const std::string& unit, Strength strength) {
-  list.push_back(number<[](Row& row) -> double& { return (row.*Member).r; }>(name + "_r", unit, strength));
-  list.push_back(number<[](Row& row) -> double& { return (row.*Member).g; }>(name + "_g", unit, strength));
-  list.push_back(number<[](Row& row) -> double& { return (row.*Member).b; }>(name + "_b", unit, strength));
+  list.push_back(number<[](auto& row) -> auto& { return (row.*Member).r; }>(name + "_r", unit, strength));
+  list.push_back(number<[](auto& row) -> auto& { return (row.*Member).g; }>(name + "_g", unit, strength));
+  list.push_back(number<[](auto& row) -> auto& { return (row.*Member).b; }>(name + "_b", unit, strength));
 }
 
 template <auto Member>
 Field one(std::string name, std::string unit, Strength strength) {
-  return number<[](Row& row) -> double& { return row.*Member; }>(std::move(name), std::move(unit), strength);
+  return number < [](auto& row) -> auto& { return row.*Member; }
+  > (std::move(name), std::move(unit), strength);
 }
 
 template <auto Member>
