@@ -114,7 +114,9 @@ class Fields {
     for (const Field<Row>& field : fields_) {
       if (field.set == nullptr) continue;
       const std::optional<std::size_t> column = table.column(field.column.name);
-      if (column && !field.set(into, table.at(row, *column))) return field.column.name;
+      if (!column) continue;
+      const bool is_of_type = table.columns()[*column].type == field.column.type;
+      if (!is_of_type || !field.set(into, table.at(row, *column))) return field.column.name;
     }
     return std::nullopt;
   }

@@ -217,6 +217,10 @@ TEST_F(Tables, TakeRowsFromFieldsAndGiveThemBack) {
   }
   EXPECT_FALSE(fields.read_csv("a,0.1,7", from_line));
   EXPECT_FALSE(fields.read_csv("a,0.1,-7,yes", from_line));
+  const Table of_texts(fields.kind(), {}, {{.name = "value", .type = Type::kText}});
+  Table other = of_texts;
+  other.append(std::vector<Cell>{std::string_view("0.1")});
+  EXPECT_EQ(fields.read(other, 0, from_table), "value") << "a column of another type";
   write(table, path("t.csv"));
   RowReader<Pair> reader(path("t.csv"), fields, "give pairs");
   Pair row;
