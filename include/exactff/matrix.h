@@ -132,6 +132,8 @@ jobs::Summary write(const Request& request, const std::filesystem::path& file,
 // The matrix in the file that write() or merge() made for this request. Throws InputError if the file is damaged or of
 // other patches.
 [[nodiscard]] Matrix read(const Request& request, const std::filesystem::path& file);
+// The same of a matrix that was read already.
+[[nodiscard]] Matrix matrix_of(const Request& request, NamedMatrix named);
 
 // Writes the arrays of a sparse matrix (CSR) for NumPy and SciPy: scipy.sparse.load_npz(path) gives the factors.
 // `radius`, in the order of `data`: data - radius and data + radius are bounds. `claim` and `way` likewise. `from` and

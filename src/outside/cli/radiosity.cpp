@@ -379,11 +379,12 @@ std::optional<matrix::Matrix> view_factors_of(const RadiosityArguments& args, co
     return kept_view_factors(args,
                              {.scene = &scene, .from = patches, .to = patches, .options = of_matrix, .shard = {}});
   }
-  const matrix::NamedMatrix table = matrix::read_named(args.matrix);
-  require_matrix_of(scene, table);
-  options = matrix::options_of(table.head);
-  const matrix::Options as_there{.factors = options, .backs = !table.back.empty(), .open = !table.open.empty()};
-  return matrix::read({.scene = &scene, .from = patches, .to = patches, .options = as_there, .shard = {}}, args.matrix);
+  matrix::NamedMatrix named = matrix::read_named(args.matrix);
+  require_matrix_of(scene, named);
+  options = matrix::options_of(named.head);
+  const matrix::Options as_there{.factors = options, .backs = !named.back.empty(), .open = !named.open.empty()};
+  return matrix::matrix_of({.scene = &scene, .from = patches, .to = patches, .options = as_there, .shard = {}},
+                           std::move(named));
 }
 
 // Solves, and computes view factors again where a width is wanted.

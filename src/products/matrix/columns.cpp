@@ -150,18 +150,21 @@ class NamedReader {
   NamedReader(const table::Table& table, const std::filesystem::path& file) : table_(table) {
     named_.file = file.string();
     named_.head = table.head();
-    if (table.kind() != columns().kind() || table.rows() == 0) {
+    const bool has_columns = std::ranges::all_of(
+        columns().columns(), [&](const table::Column& column) { return table.column(column.name).has_value(); });
+    if (table.kind() != columns().kind() || !has_columns || table.rows() == 0) {
       complain(0, "is no matrix of view factors, or has no entries", "give a file written by `exactff matrix -o`");
       problems_.throw_if_any();
     }
-    entries_.resize(table.rows());
-    for (std::size_t i = 0; i < entries_.size(); ++i) take(i);
+    for (std::size_t i = 0; i < table.rows(); ++i) take(i);
     problems_.throw_if_any();
+    from_ = table.texts(table.column("from").value());
+    to_ = table.texts(table.column("to").value());
   }
 
   NamedMatrix read() {
     find_columns();
-    for (std::size_t first = 0; first < entries_.size() && problems_.empty(); first += width_) take_row(first);
+    for (std::size_t first = 0; first < factors_.size() && problems_.empty(); first += width_) take_row(first);
     problems_.throw_if_any();
     return std::move(named_);
   }
@@ -172,8 +175,8 @@ class NamedReader {
   }
 
   void take(std::size_t row) {
-    const auto bad = columns().read(table_, row, entries_[row]);
-    const ViewFactor& f = entries_[row].factor;
+    const auto bad = columns().read(table_, row, entry_);
+    const ViewFactor& f = factors_.emplace_back(entry_.factor);
     if (bad) {
       complain(table_.line_of(row), "column " + text::in_quotes(*bad) + " has an impossible value");
     } else if (!(0.0 <= f.lower && f.lower <= f.value && f.value <= f.upper && f.upper <= 1.0) ||
@@ -186,33 +189,29 @@ class NamedReader {
   // Those of the first row: up to the first entry of another.
   void find_columns() {
     width_ = 1;
-    while (width_ < entries_.size() && entries_[width_].from == entries_.front().from &&
-           entries_[width_].to != entries_.front().to) {
-      ++width_;
-    }
+    while (width_ < factors_.size() && from_[width_] == from_.front() && to_[width_] != to_.front()) ++width_;
     patches_ = width_;
     const auto take_off = [&](std::string_view name) {
-      const bool there = patches_ > 0 && entries_[patches_ - 1].to == name;
+      const bool there = patches_ > 0 && to_[patches_ - 1] == name;
       patches_ -= there ? 1 : 0;
       return there;
     };
     has_buried_ = take_off(kBuried);
     (void)take_off(kOpen);
     has_back_ = take_off(kBack);
-    for (std::size_t j = 0; j < patches_; ++j) named_.to.push_back(entries_[j].to);
+    named_.to.assign(to_.begin(), to_.begin() + static_cast<std::ptrdiff_t>(patches_));
   }
 
   void take_row(std::size_t first) {
-    named_.from.push_back(entries_[first].from);
+    named_.from.push_back(from_[first]);
     for (std::size_t i = first; i < first + width_; ++i) {
-      const Entry& begin = entries_[first];
-      if (i == entries_.size() || entries_[i].from != begin.from || entries_[i].to != entries_[i - first].to ||
-          entries_[i].factor.area_from != begin.factor.area_from) {
+      if (i == factors_.size() || from_[i] != from_[first] || to_[i] != to_[i - first] ||
+          factors_[i].area_from != factors_[first].area_from) {
         return complain(
-            table_.line_of(std::min(i, entries_.size() - 1)),
-            "the row of " + text::in_quotes(begin.from) + " has not the columns of the first row, or two areas");
+            table_.line_of(std::min(i, factors_.size() - 1)),
+            "the row of " + text::in_quotes(from_[first]) + " has not the columns of the first row, or two areas");
       }
-      entries_of(i - first).push_back(entries_[i].factor);
+      entries_of(i - first).push_back(factors_[i]);
       named_.lines.push_back(table_.line_of(i));
     }
   }
@@ -225,7 +224,9 @@ class NamedReader {
 
   const table::Table& table_;
   NamedMatrix named_;
-  std::vector<Entry> entries_;
+  Entry entry_;  // kept to avoid reallocation
+  std::vector<ViewFactor> factors_;
+  std::span<const std::string> from_, to_;  // of the table
   text::ProblemList problems_;
   std::size_t width_ = 1;    // entries of a row
   std::size_t patches_ = 1;  // those to patches
@@ -236,7 +237,8 @@ class NamedReader {
 
 NamedMatrix read_named(const std::filesystem::path& file) {
   const kernel::StandardArithmetic arithmetic;
-  return NamedReader(table::read(file), file).read();
+  const table::Table table = table::read(file);
+  return NamedReader(table, file).read();
 }
 
 }  // namespace exactff::matrix

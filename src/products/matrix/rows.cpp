@@ -102,13 +102,14 @@ bool are_names(const Scene& scene, const std::vector<Selection>& patches, const 
 
 }  // namespace
 
-Matrix read(const Request& request, const fs::path& file) {
-  NamedMatrix named = read_named(file);
+Matrix read(const Request& request, const fs::path& file) { return matrix_of(request, read_named(file)); }
+
+Matrix matrix_of(const Request& request, NamedMatrix named) {
   const bool same = are_names(*request.scene, request.from, named.from) &&
                     are_names(*request.scene, request.to, named.to) && named.back.empty() != request.options.backs &&
                     named.open.empty() != request.options.open;
   if (!same) {
-    text::refuse(file, "holds other rows or columns than those that are asked for",
+    text::refuse(fs::path(named.file), "holds other rows or columns than those that are asked for",
                  "its entries would be taken for others", "compute the matrix again, or name another file");
   }
   return {{request.from, request.to, std::move(named.entries)},
