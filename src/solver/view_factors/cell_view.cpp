@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::uint64_t kManySigns = 1 << 18;                  // a cell that asks for more is cut by what it has
 constexpr std::size_t kManyCandidates = 16;                    // whose events are not worth a count
+constexpr std::size_t kFewCandidates = 4;                      // in any cell, some may be covered by others
 constexpr std::uint64_t kSignsForAnOrder = 16;                 // the work that it takes
 constexpr std::size_t kSource = static_cast<std::size_t>(-1);  // the owner of an edge, beside the occluders
 
@@ -21,8 +22,9 @@ const Edge& previous(const Ring& ring, std::size_t i) { return ring[(i + ring.si
 }  // namespace
 
 CellView::CellView(const Sight& sight, PairMemory& memory, std::size_t id) : sight_(sight), memory_(memory), id_(id) {
-  for (const Occluder& occluder : sight.occluders) reversed_.push_back(reverse_of(occluder.ring));
+  for (std::uint32_t o = 0; o < sight.shadow_count(); ++o) reversed_.push_back(reverse_of(sight.shadow(o).ring));
   find_same_edges();
+  was_covered_.resize(sight.shadow_count());
   if (!sight.is_of_open()) return;
   for (PointId p = 0; p < sight.points.point_count(); ++p) {
     in_plane_.push_back(side_of(sight.receiver, sight.points[p]) == 0);
@@ -37,8 +39,8 @@ void CellView::find_same_edges() {
     bool from_lower;
   };
   std::vector<Place> places;
-  for (std::uint32_t o = 0; o < sight_.occluders.size(); ++o) {
-    const Ring& ring = sight_.occluders[o].ring;
+  for (std::uint32_t o = 0; o < sight_.shadow_count(); ++o) {
+    const Ring& ring = sight_.shadow(o).ring;
     edges_.emplace_back(ring.size());
     for (std::uint32_t i = 0; i < ring.size(); ++i) {
       const auto [lower, upper] = std::minmax(ring[i].from, ring[i].to);
@@ -57,22 +59,34 @@ void CellView::find_same_edges() {
   }
 }
 
+std::vector<std::pair<std::uint32_t, std::size_t>> CellView::neighbours_of(std::uint32_t occluder) const {
+  std::vector<std::pair<std::uint32_t, std::size_t>> neighbours;
+  for (std::size_t side = 0; side < edges_[occluder].size(); ++side) {
+    for (std::uint32_t i = edges_[occluder][side].begin; i < edges_[occluder][side].end; ++i) {
+      if (same_edges_[i].occluder != occluder) neighbours.emplace_back(same_edges_[i].occluder, side);
+    }
+  }
+  return neighbours;
+}
+
 void CellView::note_facing() {
-  facing_.assign(sight_.occluders.size(), 0);
+  facing_.assign(sight_.shadow_count(), 0);
   for (const Candidate& candidate : *candidates_) facing_[candidate.occluder] = candidate.facing;
 }
 
-// True if a candidate lies on the other side of the edge: as seen from the cell, both run counter-clockwise round their
+// A candidate that lies on the other side of the edge: as seen from the cell, both run counter-clockwise round their
 // occluders, in opposite directions. `edge`: by its place in the ring.
-bool CellView::is_between_occluders(std::uint32_t owner, std::size_t edge) const {
+std::optional<std::uint32_t> CellView::neighbour_at(std::uint32_t owner, std::size_t edge) const {
   const EdgeRange range = edges_[owner][edge];
-  if (range.end - range.begin == 1) return false;
+  if (range.end - range.begin == 1) return std::nullopt;
   const auto same = std::span(same_edges_).subspan(range.begin, range.end - range.begin);
   const auto own = std::ranges::find(same, owner, &SameEdge::occluder);
-  return std::ranges::any_of(same, [&](const SameEdge& other) {
+  const auto found = std::ranges::find_if(same, [&](const SameEdge& other) {
     const int facing = facing_[other.occluder];
-    return facing != 0 && (facing == facing_[owner]) == (other.from_lower != own->from_lower);
+    return facing != 0 && facing != kMixed && (facing == facing_[owner]) == (other.from_lower != own->from_lower);
   });
+  if (found == same.end()) return std::nullopt;
+  return found->occluder;
 }
 
 void CellView::start() {
@@ -149,7 +163,7 @@ bool CellView::holds(const Ring& ring, const Ring& other) {
 }
 
 const Ring& CellView::ring_of(const Candidate& candidate) const {
-  return candidate.facing > 0 ? sight_.occluders[candidate.occluder].ring : reversed_[candidate.occluder];
+  return candidate.facing > 0 ? sight_.shadow(candidate.occluder).ring : reversed_[candidate.occluder];
 }
 
 void CellView::consider_cut(const std::shared_ptr<const Plane>& plane) {
@@ -182,19 +196,19 @@ bool CellView::is_outside(const Solid& solid) {
 
 // True if it shows the cell the back of a closed surface, of which it may turn out to be spare.
 bool CellView::is_back(const Candidate& candidate) const {
-  const std::uint32_t id = sight_.occluders[candidate.occluder].solid;
+  const std::uint32_t id = sight_.shadow(candidate.occluder).solid;
   return id != kNoSolid && candidate.facing != kMixed && (candidate.facing > 0) == sight_.solids[id].turned_inside_out;
 }
 
 // True if the pieces of its closed surface that show the cell their fronts cover all that the occluder does.
 bool CellView::is_spare_back(const Candidate& candidate) {
-  return is_back(candidate) && is_outside(sight_.solids[sight_.occluders[candidate.occluder].solid]);
+  return is_back(candidate) && is_outside(sight_.solids[sight_.shadow(candidate.occluder).solid]);
 }
 
 // Finds how the occluder faces the cell and whether it can cover anything. True if it hides the whole source. One that
 // covers nothing then faces neither side.
 bool CellView::sort_out(Candidate& candidate) {
-  const Occluder& occluder = sight_.occluders[candidate.occluder];
+  const Occluder& occluder = sight_.shadow(candidate.occluder);
   std::int8_t& facing = candidate.facing;
   if (facing == kUnasked || facing == kMixed) facing = static_cast<std::int8_t>(sign_inside(*occluder.plane, *cell_));
   bool beside = facing == 0 || is_beside(sight_.source, occluder.ring);
@@ -203,7 +217,7 @@ bool CellView::sort_out(Candidate& candidate) {
       beside = is_beside(ring_of(candidate), sight_.source);
       if (!beside && holds(ring_of(candidate), sight_.source)) return true;
     }
-    beside = beside || is_spare_back(candidate);
+    if (!beside && is_spare_back(candidate)) beside = was_covered_[candidate.occluder] = true;
   }
   doubts_.clear();
   if (beside) {
@@ -214,16 +228,42 @@ bool CellView::sort_out(Candidate& candidate) {
   return false;
 }
 
+// True if all of the inner occluder is seen inside the shadow of the outer one and a neighbour of it, as are the two
+// triangles of a bent face: on the inner side of every edge but the one between them. Of a polygon, convex or not,
+// these half-planes share its kernel.
+bool CellView::holds_with_neighbour(const Candidate& outer, std::uint32_t inner) {
+  const Ring& ring = ring_of(outer);
+  const auto is_inside = [&](const Ring& half, const Edge& shared) {
+    return std::ranges::all_of(half, [&](const Edge& e) {
+      if (e.line == shared.line && std::minmax(e.from, e.to) == std::minmax(shared.from, shared.to)) return true;
+      return std::ranges::all_of(sight_.shadow(inner).ring, [&](const Edge& corner) {
+        const int s = side(e, corner.from);
+        return s == 0 || s == 1;
+      });
+    });
+  };
+  for (std::uint32_t i = 0; i < ring.size(); ++i) {
+    const std::uint32_t edge = outer.facing > 0 ? i : static_cast<std::uint32_t>(ring.size()) - 1 - i;
+    const std::optional<std::uint32_t> neighbour = neighbour_at(outer.occluder, edge);
+    if (!neighbour || *neighbour == inner || is_back({*neighbour, facing_[*neighbour]})) continue;
+    if (is_inside(ring, ring[i]) && is_inside(ring_of({*neighbour, facing_[*neighbour]}), ring[i])) return true;
+  }
+  return false;
+}
+
 // Takes out those that another one covers from all of the cell: the union of the shadows is the same without them. A
 // back covers nothing here: it may be taken out itself, for a part of the cell, and then others of its surface must be
 // there.
 void CellView::drop_covered(Candidates& candidates) {
+  note_facing();
   for (Candidate& inner : candidates) {
     const auto covers_it = [&](const Candidate& outer) {
       return outer.facing != 0 && outer.facing != kMixed && outer.occluder != inner.occluder && !is_back(outer) &&
-             holds(ring_of(outer), sight_.occluders[inner.occluder].ring);
+             (holds(ring_of(outer), sight_.shadow(inner.occluder).ring) || holds_with_neighbour(outer, inner.occluder));
     };
-    if (std::ranges::any_of(candidates, covers_it)) inner.facing = 0;
+    if (!std::ranges::any_of(candidates, covers_it)) continue;
+    inner.facing = facing_[inner.occluder] = 0;
+    was_covered_[inner.occluder] = true;
   }
   doubts_.clear();
   std::erase_if(candidates, [](const Candidate& c) { return c.facing == 0; });
@@ -470,7 +510,7 @@ bool CellView::look_at_edges() {
   return std::ranges::all_of(*candidates_, [&](const Candidate& c) {
     const Ring& ring = ring_of(c);
     const auto is_inner = [&](std::size_t i) {
-      return is_between_occluders(c.occluder, c.facing > 0 ? i : ring.size() - 1 - i);
+      return neighbour_at(c.occluder, c.facing > 0 ? i : ring.size() - 1 - i).has_value();
     };
     return look_at_ring(ring, is_inner, c.occluder);
   });
@@ -491,7 +531,7 @@ std::size_t CellView::count_events(const Cell& cell, const Candidates& candidate
     }
   };
   for (const Candidate& candidate : candidates) {
-    const Ring& ring = sight_.occluders[candidate.occluder].ring;
+    const Ring& ring = sight_.shadow(candidate.occluder).ring;
     look_at(sight_.source, ring);
     look_at(ring, sight_.source);
   }
@@ -550,7 +590,7 @@ CellView::Outcome CellView::look(const Cell& cell, std::size_t depth, Candidates
   }
   std::erase_if(candidates, [](const Candidate& c) { return c.facing == 0; });
   if (best_cut_ != nullptr) return Outcome::kCut;
-  if (depth <= top_ + 1) drop_covered(candidates);
+  if (depth <= top_ + 1 || candidates.size() <= kFewCandidates) drop_covered(candidates);
   if (!look_at_edges()) return Outcome::kCut;
   if (sight_.is_of_open()) look_at_horizon();
   return best_cut_ != nullptr ? Outcome::kCut : !triples_.empty() ? Outcome::kCrossings : Outcome::kKnown;

@@ -91,6 +91,11 @@ class CellView {
   // that turn out to cover nothing.
   [[nodiscard]] Outcome look(const Cell& cell, std::size_t depth, Candidates& candidates);
   [[nodiscard]] Candidates all_candidates() const;
+  // Of an occluder that has been taken out: whether it is known to hide nothing of the source from the present cell,
+  // not only what others hide.
+  [[nodiscard]] bool hides_nothing(std::uint32_t occluder) const { return !was_covered_[occluder]; }
+  // The occluders that share a side with this one, and the side, by its place in the ring.
+  [[nodiscard]] std::vector<std::pair<std::uint32_t, std::size_t>> neighbours_of(std::uint32_t occluder) const;
 
   [[nodiscard]] const std::vector<BoundaryPart>& parts() const { return parts_; }
   // Whether all of the horizon bounds the region, too; parts() then has the edges on it that take off some.
@@ -144,6 +149,7 @@ class CellView {
   bool is_outside(const Solid& solid);
   [[nodiscard]] bool is_back(const Candidate& candidate) const;
   bool is_spare_back(const Candidate& candidate);
+  bool holds_with_neighbour(const Candidate& outer, std::uint32_t inner);
   bool sort_out(Candidate& candidate);
   void drop_covered(Candidates& candidates);
   Covered overlap(const Edge& edge, const Ring& ring, Along& along);
@@ -152,7 +158,7 @@ class CellView {
   void look_at_edge(const Edge& edge, std::size_t owner);
   void find_same_edges();
   void note_facing();
-  [[nodiscard]] bool is_between_occluders(std::uint32_t owner, std::size_t edge) const;
+  [[nodiscard]] std::optional<std::uint32_t> neighbour_at(std::uint32_t owner, std::size_t edge) const;
   [[nodiscard]] bool look_at_edges();
   bool covers(Along along, std::size_t owner, std::size_t other) const;
   int order(const Edge& edge, const End& p, const End& q);
@@ -178,6 +184,7 @@ class CellView {
   std::vector<SameEdge> same_edges_;
   std::vector<std::vector<EdgeRange>> edges_;  // of every occluder, in the order of its ring
   std::vector<std::int8_t> facing_;            // of every occluder; 0: it is no candidate
+  std::vector<bool> was_covered_;              // of every occluder: others hid from some cell what it does
 
   const Cell* cell_ = nullptr;
   const Candidates* candidates_ = nullptr;

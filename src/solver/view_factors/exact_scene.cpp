@@ -93,6 +93,12 @@ Plane make_plane(Homogeneous exact, const Units& units) {
   return plane;
 }
 
+Side Side::of(const Plane& plane) {
+  const auto& n = plane.rounded;
+  const double size = std::hypot(n[0], n[1], n[2]);
+  return {{n[0] / size, n[1] / size, n[2] / size}, n[3] / size};
+}
+
 Homogeneous join(const Point& a, const Point& b, const Point& c) { return orthogonal(a.exact, b.exact, c.exact); }
 Homogeneous meet(const Plane& a, const Plane& b, const Plane& c) { return orthogonal(a.exact, b.exact, c.exact); }
 
@@ -286,6 +292,11 @@ PointId Points::crossing(const Edge& edge, const Plane& plane, std::uint32_t nam
     add(make_point(std::move(point), units_));
   }
   return place->second;
+}
+
+Edge Points::between_crossings(const Edge& one, const Edge& other, const Plane& plane, std::uint32_t name) {
+  const PointId from = crossing(one, plane, name);
+  return edge(from, crossing(other, plane, name));
 }
 
 Ring Points::clip(const Ring& ring, const Plane& plane, std::uint32_t name) {

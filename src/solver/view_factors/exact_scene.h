@@ -14,6 +14,7 @@
 #include "exactff/scene.h"
 #include "kernel/filter.h"
 #include "kernel/numbers.h"
+#include "kernel/vec.h"
 #include "scene/closed_surfaces.h"
 #include "scene/panels.h"
 
@@ -60,6 +61,16 @@ struct Plane {
 [[nodiscard]] Point point_of(const Vec3& vertex, const Units& units);
 [[nodiscard]] Point make_point(Homogeneous exact, const Units& units);  // any w other than zero
 [[nodiscard]] Plane make_plane(Homogeneous exact, const Units& units);
+
+// A half-space, in doubles, where the height is positive. It errs by less than 2^-46 where no coordinate exceeds 1.
+struct Side {
+  Vec3 normal;  // of length 1
+  double offset = 0.0;
+
+  [[nodiscard]] static Side of(const Plane& plane);
+  [[nodiscard]] double height(const Vec3& x) const { return kernel::dot(normal, x) + offset; }
+  [[nodiscard]] Side opposite() const { return {kernel::scaled(normal, -1.0), -offset}; }
+};
 
 // The plane through three points; positive on the side from which they run counter-clockwise. All zero if they lie on
 // one line.
@@ -208,6 +219,8 @@ class Points {
   // The part of the polygon on the positive side of the plane; empty if it has no area. `name` tells planes apart:
   // where one cuts a line that it has cut before, the point is the same.
   Ring clip(const Ring& ring, const Plane& plane, std::uint32_t name);
+  // From where the line of the one edge crosses the plane to where that of the other does.
+  Edge between_crossings(const Edge& one, const Edge& other, const Plane& plane, std::uint32_t name);
   [[nodiscard]] Plane plane_of(const Ring& ring) const;
   // Frees what only further rings need.
   void complete();

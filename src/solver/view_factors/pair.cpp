@@ -1,6 +1,7 @@
 #include "view_factors/pair.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -23,6 +24,13 @@ constexpr double kLeastMargin = 0x1p-24;           // the same
 constexpr std::uint64_t kSignsForACell = 1 << 15;  // more than where few occluders lie between
 constexpr std::size_t kManyOccluders = 256;        // an event cell of more is not worth a visit to its centre
 constexpr double kShareOfParent = 0.125;           // of a cell's error that its halves may have
+constexpr double kTrifle = 0x1p-10;                // of the receiver's area: what may be left out at first
+constexpr std::size_t kMostDirections = 16;
+constexpr double kNearMiss = 0x1p-10, kRoundedHeight = 0x1p-44;  // of a corner and a plane
+constexpr std::size_t kMostToMiss = 256;
+constexpr double kSameDirection = 0x1p-30;
+constexpr std::size_t kMostToCover = 64;  // occluders of which one may cover another
+constexpr double kMostLeftOut = 0.5;      // of a cell's error; if more is due to it, less is left out
 // Whether the difference of two rules tells their error. Where an edge is nearer than this, F may have a peak that both
 // rules miss. At 1.5 radii, two points more divide the error by 2.6^4 = 46.
 constexpr double kLeastRadii = 1.5;
@@ -120,7 +128,13 @@ Pair::Pair(const Scene& scene, Sight sight, FaceId receiver_face, std::shared_pt
       whole_(std::move(whole)),
       bound_(sight_),
       view_(sight_, memory, id) {
-  if (!sight_.is_of_open()) return;
+  if (!sight_.is_of_open()) {
+    if (sight_.near_horizon) {
+      strip_.emplace(sight_, sight_.source, *sight_.near_horizon, sight_.points.plane_of(sight_.source),
+                     StripBound::Sides::kFront);
+    }
+    return;
+  }
   for (const int side : {1, -1}) {
     for (const Occluder& occluder : sight_.occluders) {
       std::vector<Vec3> corners;
@@ -150,7 +164,7 @@ std::vector<Share> Pair::cells(double enough, const Budget& budget) {
   budget_ = {cost() + budget.cost, effort() + budget.effort};
   std::vector<Share> shares;
   view_.start();
-  look(sight_.root, 0, view_.all_candidates(), enough, shares);
+  look(sight_.root, 0, view_.all_candidates(), enough, kTrifle * area(sight_.root), shares);
   return shares;
 }
 
@@ -189,36 +203,267 @@ Evaluated Pair::value_at(const Formula& formula, const Point& x) const {
   return precise([&](long bits) { return formula.at(ball_point(x, bits)); });
 }
 
+// Where all corners lie in the planes or far from them, as in exact models, nothing need be left out.
+bool Pair::has_near_misses(const Plane& source_plane) const {
+  const auto is_near_miss = [&](const Plane& plane, const Side& side, const Point& corner) {
+    const double height = std::abs(side.height(corner.at));
+    return height < kNearMiss && (height > kRoundedHeight || side_of(plane, corner) != 0);
+  };
+  const auto misses = [&](const Plane& plane) {
+    const Side side = Side::of(plane);
+    const auto any_of = [&](const Ring& ring) {
+      return std::ranges::any_of(ring, [&](const Edge& e) { return is_near_miss(plane, side, sight_.points[e.from]); });
+    };
+    return any_of(sight_.source) ||
+           std::ranges::any_of(sight_.root.corners, [&](const Point& p) { return is_near_miss(plane, side, p); }) ||
+           std::ranges::any_of(sight_.occluders, [&](const Occluder& o) { return any_of(o.ring); });
+  };
+  return misses(sight_.receiver) || misses(source_plane) ||
+         (sight_.occluders.size() <= kMostToMiss &&
+          std::ranges::any_of(sight_.occluders, [&](const Occluder& o) { return misses(*o.plane); }));
+}
+
+void Pair::find_bounds() {
+  if (std::exchange(has_bounds_, true) || sight_.is_of_open()) return;
+  const Plane source_plane = sight_.points.plane_of(sight_.source);
+  if (!has_near_misses(source_plane)) return;
+  std::vector<Vec3> directions;
+  const std::size_t most_directions = sight_.occluders.size() <= kMostToCover ? kMostDirections : 3;
+  const auto add_direction = [&](const Plane& plane) {
+    const Vec3 normal = Side::of(plane).normal;
+    const auto is_as = [&](const Vec3& known) { return kernel::length(kernel::cross(known, normal)) < kSameDirection; };
+    if (directions.size() < most_directions && std::ranges::none_of(directions, is_as)) directions.push_back(normal);
+  };
+  add_direction(sight_.receiver);
+  add_direction(source_plane);
+  for (const Occluder& occluder : sight_.occluders) add_direction(*occluder.plane);
+  for (std::uint32_t o = 0; o < sight_.occluders.size(); ++o) {
+    HiddenBound bound(sight_, source_plane, directions, sight_.occluders[o]);
+    if (bound.may_be_small()) hidden_.emplace_back(o, std::move(bound));
+  }
+  for (const WidenedOccluder& widened : sight_.widened) {
+    const Occluder& occluder = sight_.occluders[widened.original];
+    widened_.emplace_back(widened.original,
+                          StripBound(sight_, occluder.ring, widened.near, *occluder.plane, StripBound::Sides::kBoth));
+  }
+  if (sight_.occluders.size() <= kMostToCover) find_covers();
+}
+
+void Pair::find_covers() {
+  const auto add = [&](std::uint32_t inner, std::uint32_t outer, std::optional<CoverBound::Neighbour> neighbour) {
+    CoverBound bound(sight_, inner, outer, neighbour);
+    if (!bound.may_be_small()) return;
+    covers_.push_back({inner, {outer}, std::move(bound)});
+    if (neighbour) covers_.back().outer.push_back(neighbour->occluder);
+  };
+  for (std::uint32_t inner = 0; inner < sight_.occluders.size(); ++inner) {
+    for (std::uint32_t outer = 0; outer < sight_.occluders.size(); ++outer) {
+      if (outer == inner) continue;
+      add(inner, outer, {});
+      for (const auto& [neighbour, side] : view_.neighbours_of(outer)) {
+        if (neighbour == inner || neighbour >= sight_.occluders.size()) continue;
+        add(inner, outer, CoverBound::Neighbour{neighbour, side});
+      }
+    }
+  }
+}
+
+namespace {
+
+template <class Bounds>
+const auto& bound_of(const Bounds& bounds, std::uint32_t occluder) {
+  return std::ranges::lower_bound(bounds, occluder, {}, &Bounds::value_type::first)->second;
+}
+
+}  // namespace
+
+void Pair::bound(LeftOut& left_out, const Cell& cell) const {
+  left_out.over = left_out.under = 0.0;
+  if (left_out.candidates.empty()) return;
+  const std::vector<Vec3> corners = positions_of(cell.corners);
+  const double most = bound_.on(corners), size = size_of(cell);
+  for (std::size_t i = 0; i < left_out.candidates.size(); ++i) {
+    const std::uint32_t occluder = left_out.candidates[i].occluder, cover = left_out.covers[i];
+    if (cover == LeftOut::kWidened) {
+      left_out.under = (left_out.under + bound_of(widened_, occluder).on(corners, size)) * kSlack;
+    } else {
+      left_out.over += cover == LeftOut::kByItself ? bound_of(hidden_, occluder).on(corners, most, size)
+                                                   : covers_[cover].bound.on(corners, most, size);
+      left_out.over *= kSlack;
+    }
+  }
+}
+
+Candidates Pair::united(const Candidates& candidates, const LeftOut& left_out) const {
+  Candidates all;
+  all.reserve(candidates.size() + left_out.candidates.size());
+  std::ranges::merge(candidates, left_out.candidates, std::back_inserter(all), {}, &Candidate::occluder,
+                     &Candidate::occluder);
+  std::erase_if(all, [&](const Candidate& candidate) { return candidate.occluder >= sight_.occluders.size(); });
+  return all;
+}
+
+// Those that hide least come first. One that covers another is left out for what it hides itself, but not for being
+// covered: none covers in a circle. One that hides nothing may cover as well: no segment to the source meets it.
+LeftOut Pair::leave_out(const Cell& cell, Candidates& candidates, double trifle) {
+  LeftOut left_out;
+  if (candidates.empty()) return left_out;
+  find_bounds();
+  if (hidden_.empty() && covers_.empty() && widened_.empty()) return left_out;
+  struct Choice {
+    double most;
+    std::uint32_t occluder, cover;
+    [[nodiscard]] auto operator<=>(const Choice&) const = default;
+  };
+  std::vector<Choice> choices;
+  const std::vector<Vec3> corners = positions_of(cell.corners);
+  const double most = bound_.on(corners), size = size_of(cell);
+  std::vector<bool> is_here(sight_.occluders.size()), covers_other(sight_.occluders.size());
+  for (const Candidate& candidate : candidates) is_here[candidate.occluder] = true;
+  const std::vector<bool> was_here = is_here;
+  const auto are_kept = [&](const std::vector<std::uint32_t>& outer) {
+    return std::ranges::all_of(outer,
+                               [&](std::uint32_t o) { return is_here[o] || (!was_here[o] && view_.hides_nothing(o)); });
+  };
+  for (const auto& [occluder, bound] : hidden_) {
+    if (is_here[occluder]) choices.push_back({bound.on(corners, most, size), occluder, LeftOut::kByItself});
+  }
+  for (std::uint32_t i = 0; i < covers_.size(); ++i) {
+    const Cover& cover = covers_[i];
+    if (!is_here[cover.inner] || !are_kept(cover.outer)) continue;
+    choices.push_back({cover.bound.on(corners, most, size), cover.inner, i});
+  }
+  std::ranges::sort(choices);
+  std::vector<std::uint32_t> way(sight_.occluders.size());
+  for (const auto& [hidden, occluder, cover] : choices) {
+    if (left_out.over + hidden > trifle) break;
+    if (!is_here[occluder]) continue;
+    if (cover != LeftOut::kByItself) {
+      const std::vector<std::uint32_t>& outer = covers_[cover].outer;
+      if (covers_other[occluder] || !are_kept(outer)) continue;
+      for (const std::uint32_t o : outer) covers_other[o] = true;
+    }
+    is_here[occluder] = false;
+    way[occluder] = cover;
+    left_out.over = (left_out.over + hidden) * kSlack;
+  }
+  Candidates instead;
+  for (std::uint32_t i = 0; i < widened_.size(); ++i) {
+    const auto& [occluder, strip] = widened_[i];
+    if (!is_here[occluder]) continue;
+    const double hidden = strip.on(corners, size);
+    if (left_out.width() + hidden > trifle) continue;
+    is_here[occluder] = false;
+    way[occluder] = LeftOut::kWidened;
+    left_out.under = (left_out.under + hidden) * kSlack;
+    instead.push_back({static_cast<std::uint32_t>(sight_.occluders.size()) + i});
+  }
+  std::erase_if(candidates, [&](const Candidate& candidate) {
+    if (is_here[candidate.occluder]) return false;
+    left_out.candidates.push_back(candidate);
+    left_out.covers.push_back(way[candidate.occluder]);
+    return true;
+  });
+  candidates.insert(candidates.end(), instead.begin(), instead.end());
+  return left_out;
+}
+
+// Only where all of these sides are seen, and those before and after lead to them: then the contour goes round the
+// strip as well.
+std::shared_ptr<const Formula> Pair::formula_to_horizon(const std::vector<BoundaryPart>& seen) const {
+  if (!strip_) return nullptr;
+  std::vector<BoundaryPart> parts = seen;
+  const auto& [first, count, in_plane] = *sight_.near_horizon;
+  const auto part_of = [&](std::size_t place) -> BoundaryPart* {
+    const LineId line = sight_.source[place % sight_.source.size()].line;
+    const auto is_part = [&](const BoundaryPart& p) { return p.sign > 0 && p.edge.line == line; };
+    const auto found = std::ranges::find_if(parts, is_part);
+    return found == parts.end() || std::ranges::count_if(parts, is_part) > 1 ? nullptr : &*found;
+  };
+  const auto is_whole_from = [](const BoundaryPart* p) { return !p->from.line && p->from.vertex == p->edge.from; };
+  const auto is_whole_to = [](const BoundaryPart* p) { return !p->to.line && p->to.vertex == p->edge.to; };
+  BoundaryPart *const before = part_of(first + sight_.source.size() - 1), *const after = part_of(first + count);
+  if (before == nullptr || after == nullptr || !is_whole_to(before) || !is_whole_from(after)) return nullptr;
+  for (std::size_t k = 0; k < count; ++k) {
+    const BoundaryPart* const side = part_of(first + k);
+    if (side == nullptr || !is_whole_from(side) || !is_whole_to(side)) return nullptr;
+  }
+  before->edge.to = before->to.vertex = in_plane.from;
+  after->edge.from = after->from.vertex = in_plane.to;
+  for (std::size_t k = 1; k < count; ++k) parts.erase(parts.begin() + (part_of(first + k) - parts.data()));
+  *part_of(first) = {in_plane, {in_plane.from, {}}, {in_plane.to, {}}, 1};
+  return std::make_shared<const Formula>(sight_, parts);
+}
+
+// Whether the boundary of the last view, which is known, needs many bits, as where edges are almost seen along one
+// another.
+bool Pair::has_slivers(const Cell& cell) {
+  find_bounds();
+  if (view_.parts().empty() || (hidden_.empty() && covers_.empty() && widened_.empty())) return false;
+  const Formula formula(sight_, view_.parts(), view_.has_horizon());
+  return !(formula.at(near_point_inside(cell)).rounding <= limits_.rounding);
+}
+
 // Depth first: the cells that wait are the siblings of those on the way.
-void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enough, std::vector<Share>& shares) {
+void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enough, double trifle,
+                std::vector<Share>& shares) {
   kernel::poll();
   ++cells_made_;
-  const CellView::Outcome outcome = view(cell, depth, candidates);
+  CellView::Outcome outcome = view(cell, depth, candidates);
+  LeftOut left_out;
+  if (outcome != CellView::Outcome::kKnown || has_slivers(cell)) {
+    left_out = leave_out(cell, candidates, trifle);
+    if (!left_out.candidates.empty()) outcome = view(cell, depth, candidates);
+  }
   if (outcome == CellView::Outcome::kKnown && view_.parts().empty() && !view_.has_horizon()) return;
+  const auto all = [&] { return united(candidates, left_out); };
   if (size_of(cell) <= limits_.negligible_area) {
-    add_dark(std::move(cell), std::move(candidates), view_.way(depth), nullptr, shares);
+    add_dark(std::move(cell), all(), view_.way(depth), nullptr, shares);
     shares.back().next = Share::Next::kNextStage;
     return;
   }
   switch (outcome) {
     case CellView::Outcome::kKnown:
-      return add_smooth(std::move(cell), std::make_shared<const Formula>(sight_, view_.parts(), view_.has_horizon()),
+      return add_smooth({.cell = std::move(cell),
+                         .candidates = left_out.candidates.empty() ? Candidates{} : std::move(candidates),
+                         .formula = std::make_shared<const Formula>(sight_, view_.parts(), view_.has_horizon()),
+                         .to_horizon = formula_to_horizon(view_.parts()),
+                         .way = {},
+                         .cut = nullptr,
+                         .left_out = std::move(left_out),
+                         .near = nullptr},
                         HUGE_VAL, shares);
     case CellView::Outcome::kCrossings:
-      return add_event(std::move(cell), depth, std::move(candidates), std::vector(view_.triples()), shares);
+      add_event(std::move(cell), depth, std::move(candidates), std::vector(view_.triples()), shares);
+      return count(shares.back(), std::move(left_out));
     case CellView::Outcome::kCut:
       break;
   }
   if (range_on(cell, candidates).half() * size_of(cell) <= enough) {
-    return add_dark(std::move(cell), std::move(candidates), view_.way(depth), view_.best_cut(), shares);
+    return add_dark(std::move(cell), all(), view_.way(depth), view_.best_cut(), shares);
   }
   if (effort() >= budget_.effort) {
-    return add_dark(std::move(cell), std::move(candidates), view_.way(depth), view_.best_cut(), shares);
+    return add_dark(std::move(cell), all(), view_.way(depth), view_.best_cut(), shares);
   }
-  if (cost() >= budget_.cost) return add_event(std::move(cell), depth, std::move(candidates), {}, shares);
+  if (cost() >= budget_.cost) {
+    add_event(std::move(cell), depth, std::move(candidates), {}, shares);
+    return count(shares.back(), std::move(left_out));
+  }
   Halves halves = cut(cell, sight_.receiver, view_.best_cut(), sight_.points.units());
-  look(std::move(halves.negative), depth + 1, candidates, enough, shares);
-  look(std::move(halves.positive), depth + 1, std::move(candidates), enough, shares);
+  candidates = all();
+  look(std::move(halves.negative), depth + 1, candidates, enough, trifle, shares);
+  look(std::move(halves.positive), depth + 1, std::move(candidates), enough, trifle, shares);
+}
+
+// What points see tells nothing of what is left out.
+void Pair::count(Share& share, LeftOut left_out) {
+  share.left_out = std::move(left_out);
+  if (share.is_dark || share.left_out.candidates.empty()) return;
+  share.integral += 0.5 * (share.left_out.under - share.left_out.over);
+  share.error = (share.error + 0.5 * share.left_out.width() + 0x1p-52 * std::abs(share.integral)) * kSlack;
+  share.bound = 0.0;
+  share.near = nullptr;
+  if (share.next != Share::Next::kMorePoints) share.next = Share::Next::kCut;
 }
 
 // For a certified integral, rounded up.
@@ -316,20 +561,32 @@ Pair::Integral Pair::enclose(const Formula& formula, const Cell& cell, double mo
           .more_points = found.error <= tolerance};
 }
 
-void Pair::add_smooth(Cell cell, std::shared_ptr<const Formula> formula, double most, std::vector<Share>& shares) {
-  const Integral found = certifies() ? enclose(*formula, cell, most) : integrate(*formula, cell);
-  if (whole_ != nullptr) check(cell, *formula);
-  shares.push_back({.cell = std::move(cell),
-                    .candidates = {},
-                    .formula = std::move(formula),
-                    .way = {},
-                    .cut = nullptr,
-                    .integral = found.integral,
-                    .error = found.error,
-                    .next = next_of(found),
-                    .stage = limits_.stage,
-                    .bound = found.bound,
-                    .near = nullptr});
+template <class Integrate>
+Pair::Integral Pair::better_integral(const Share& share, const Integrate& integrate) const {
+  const Integral exact = integrate(*share.formula);
+  if (share.to_horizon == nullptr) return exact;
+  const double half = 0.5 * strip_->on(positions_of(share.cell.corners), size_of(share.cell));
+  if (!(half < exact.error)) return exact;
+  Integral to_horizon = integrate(*share.to_horizon);
+  to_horizon.integral -= half;
+  to_horizon.error = (to_horizon.error + half + 0x1p-52 * std::abs(to_horizon.integral)) * kSlack;
+  to_horizon.bound = 0.0;
+  return to_horizon.error < exact.error ? to_horizon : exact;
+}
+
+void Pair::add_smooth(Share share, double most, std::vector<Share>& shares) {
+  const Integral found = better_integral(share, [&](const Formula& formula) {
+    return certifies() ? enclose(formula, share.cell, most) : integrate(formula, share.cell);
+  });
+  if (whole_ != nullptr && share.left_out.candidates.empty()) check(share.cell, *share.formula);
+  share.integral = found.integral;
+  share.error = found.error;
+  share.next = next_of(found);
+  share.stage = limits_.stage;
+  share.bound = found.bound;
+  LeftOut left_out = std::move(share.left_out);
+  count(share, std::move(left_out));
+  shares.push_back(std::move(share));
 }
 
 // From every point, F differs from its value at the centre by at most the slope times the distance: visibility in a
@@ -347,7 +604,7 @@ double Pair::slope_bound(const Candidates& candidates, const Vec3& centre, doubl
     }
   };
   add(sight_.source);
-  for (const Candidate& candidate : candidates) add(sight_.occluders[candidate.occluder].ring);
+  for (const Candidate& candidate : candidates) add(sight_.shadow(candidate.occluder).ring);
   return sum / std::numbers::pi * kSlack;
 }
 
@@ -425,19 +682,22 @@ Pair::Integral Pair::enclose_event(const Formula& formula, const Cell& cell, con
 bool Pair::improve_whole(Share& share) {
   const bool is_new_stage = share.stage < limits_.stage;
   share.stage = limits_.stage;
-  if (share.formula == nullptr) return false;
+  if (share.formula == nullptr || share.left_out.width() > kMostLeftOut * share.error) return false;
   const bool more_points = share.next == Share::Next::kMorePoints;
   const bool is_due = (more_points && !certifies()) || (is_new_stage && share.next != Share::Next::kCut);
   if (!is_due) return false;
   ++extra_cost_;
-  const Integral found = certifies()   ? enclose(*share.formula, share.cell, HUGE_VAL)
-                         : more_points ? integrate_by<6>(*share.formula, share.cell, kRadiiForFour)
-                                       : integrate(*share.formula, share.cell);
-  if (!(found.error < share.error)) return false;
+  const Integral found = better_integral(share, [&](const Formula& formula) {
+    return certifies()   ? enclose(formula, share.cell, HUGE_VAL)
+           : more_points ? integrate_by<6>(formula, share.cell, kRadiiForFour)
+                         : integrate(formula, share.cell);
+  });
+  if (!(found.error + 0.5 * share.left_out.width() < share.error)) return false;
   share.integral = found.integral;
   share.error = found.error;
   share.next = next_of(found);
   share.bound = found.bound;
+  count(share, std::move(share.left_out));
   return true;
 }
 
@@ -449,9 +709,9 @@ std::vector<Share> Pair::improve(Share share, const Budget& budget) {
     return result;
   }
   const double enough = kShareOfParent * share.error;
-  if (share.formula == nullptr && share.way.empty()) {
+  if (share.left_out.width() > kMostLeftOut * share.error || (share.formula == nullptr && share.way.empty())) {
     view_.start();
-    look(std::move(share.cell), 0, std::move(share.candidates), enough, result);
+    look(std::move(share.cell), 0, united(share.candidates, share.left_out), enough, enough, result);
     return result;
   }
   const Units& units = sight_.points.units();
@@ -464,13 +724,18 @@ std::vector<Share> Pair::improve(Share share, const Budget& budget) {
   Halves parts = cut(share.cell, sight_.receiver, by, units);
   if (share.formula != nullptr) {
     cells_made_ += 2;
-    add_smooth(std::move(parts.negative), share.formula, enough, result);
-    add_smooth(std::move(parts.positive), share.formula, enough, result);
+    for (Cell* part : {&parts.negative, &parts.positive}) {
+      Share half = share;
+      half.cell = std::move(*part);
+      bound(half.left_out, half.cell);
+      add_smooth(std::move(half), enough, result);
+    }
   } else {
     const std::size_t depth = share.way.size();
     view_.resume(std::move(share.way));
-    look(std::move(parts.negative), depth, share.candidates, enough, result);
-    look(std::move(parts.positive), depth, std::move(share.candidates), enough, result);
+    const Candidates candidates = united(share.candidates, share.left_out);
+    look(std::move(parts.negative), depth, candidates, enough, enough, result);
+    look(std::move(parts.positive), depth, candidates, enough, enough, result);
   }
   return result;
 }

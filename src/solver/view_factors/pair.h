@@ -84,13 +84,26 @@ std::vector<WeightedPlace> gauss_places(const std::vector<Vec3>& ring) {
 
 // --- Pair ---
 
+// Candidates that are left out of a cell's view, since they hide little, or little that others do not hide, or instead
+// of which widened ones are there.
+struct LeftOut {
+  static constexpr std::uint32_t kByItself = static_cast<std::uint32_t>(-1), kWidened = static_cast<std::uint32_t>(-2);
+
+  Candidates candidates;
+  std::vector<std::uint32_t> covers;  // of each: a cover of the pair, or one of the above
+  double over = 0.0, under = 0.0;     // by how much the integral may be too large, or too small
+
+  [[nodiscard]] double width() const { return over + under; }
+};
+
 // A cell with the integral of the point factor over it, in squares of the unit of Point::at.
 struct Share {
   Cell cell;
-  Candidates candidates;                   // of a cell without a formula
-  std::shared_ptr<const Formula> formula;  // null: the boundary is not constant on the cell
-  PairMemory::Way way;                     // to the cell, the same; empty if it has not been looked at
-  std::shared_ptr<const Plane> cut;        // decides more; null: see Pair::improve
+  Candidates candidates;                        // of a cell without a formula, or of which some are left out
+  std::shared_ptr<const Formula> formula;       // null: the boundary is not constant on the cell
+  std::shared_ptr<const Formula> to_horizon{};  // of the source as far as the horizon, if that is near (sight.h)
+  PairMemory::Way way;                          // to the cell, the same; empty if it has not been looked at
+  std::shared_ptr<const Plane> cut;             // decides more; null: see Pair::improve
   double integral = 0.0;
   // Of the integral: an estimate, and for an event cell a bound besides; with its roundings. Or, certified, a bound.
   double error = 0.0;
@@ -105,6 +118,7 @@ struct Share {
   std::size_t stage = 0;  // whose limits it is within
   bool is_event = false;  // without a formula, or with a bound of its event
   bool is_dark = false;   // all that is known are bounds of the point factor
+  LeftOut left_out{};     // its middle is in the integral, and half of its width in the error
   // If positive: at every point of the cell, the point factor lies within this of `near` or, if that is null, of the
   // mean. Its integral is in the error.
   double bound = 0.0;
@@ -113,8 +127,9 @@ struct Share {
   // For a share that will not be improved.
   void keep_for_points() {
     candidates = {};
+    left_out = {};
     way = {};
-    formula = nullptr;
+    formula = to_horizon = nullptr;
     cut = nullptr;
     if (bound == 0.0) cell = {};
   }
@@ -176,9 +191,24 @@ class Pair {
 
  private:
   CellView::Outcome view(const Cell& cell, std::size_t depth, Candidates& candidates);
-  void look(Cell cell, std::size_t depth, Candidates candidates, double enough, std::vector<Share>& shares);
-  // `most`: the largest error that is useful.
-  void add_smooth(Cell cell, std::shared_ptr<const Formula> formula, double most, std::vector<Share>& shares);
+  // `trifle`: what may be hidden by candidates that are left out.
+  void look(Cell cell, std::size_t depth, Candidates candidates, double enough, double trifle,
+            std::vector<Share>& shares);
+  [[nodiscard]] bool has_slivers(const Cell& cell);
+  // Of candidates by which little is hidden from the cell, those that hide least, as many as may be left out.
+  [[nodiscard]] LeftOut leave_out(const Cell& cell, Candidates& candidates, double trifle);
+  void find_bounds();
+  [[nodiscard]] bool has_near_misses(const Plane& source_plane) const;
+  void find_covers();
+  // Of a view with these parts, if the source as far as the horizon has a formula, too.
+  [[nodiscard]] std::shared_ptr<const Formula> formula_to_horizon(const std::vector<BoundaryPart>& seen) const;
+  // Its bounds, for the cell.
+  void bound(LeftOut& left_out, const Cell& cell) const;
+  // All candidates again.
+  [[nodiscard]] Candidates united(const Candidates& candidates, const LeftOut& left_out) const;
+  static void count(Share& share, LeftOut left_out);
+  // The share has its cell and what is seen from it. `most`: the largest error that is useful.
+  void add_smooth(Share share, double most, std::vector<Share>& shares);
   // `triples`: all that is undecided; if empty, more may be.
   void add_event(Cell cell, std::size_t depth, Candidates candidates, const std::vector<CrossingTriple>& triples,
                  std::vector<Share>& shares);
@@ -195,6 +225,9 @@ class Pair {
     bool is_near = false;      // of the formula
   };
   [[nodiscard]] Share::Next next_of(const Integral& found) const;
+  // Of a share with a formula: by this, or by that of the source as far as the horizon with a bound of the difference.
+  template <class Integrate>
+  [[nodiscard]] Integral better_integral(const Share& share, const Integrate& integrate) const;
   [[nodiscard]] Integral integrate(const Formula& formula, const Cell& cell) const;
   // `radii`: the distance of the nearest edge (resolution).
   template <unsigned kCount>
@@ -234,6 +267,17 @@ class Pair {
   Limits limits_;
   FactorBound bound_;
   std::vector<FactorBound> of_occluders_;  // from their positive sides, then from the others; of what is open
+  // What may be left out of cells, found when this is first asked for.
+  struct Cover {
+    std::uint32_t inner;
+    std::vector<std::uint32_t> outer;
+    CoverBound bound;
+  };
+  bool has_bounds_ = false;
+  std::vector<std::pair<std::uint32_t, HiddenBound>> hidden_;  // by occluders that may hide little, ascending
+  std::vector<Cover> covers_;
+  std::vector<std::pair<std::uint32_t, StripBound>> widened_;  // of the widened ones, by occluders
+  std::optional<StripBound> strip_;                            // of Sight::near_horizon
   CellView view_;
   std::size_t cells_made_ = 0, extra_cost_ = 0;
   Budget budget_;  // of all calls so far and this one

@@ -35,6 +35,8 @@ class Maker {
     between_.include(source_box_.high);
     shaft_.emplace(receiver_box_, source_box_);
     add_occluders();
+    sight_.near_horizon = near_horizon(sight_.source);
+    widen_occluders();
     points.complete();
     return std::move(sight_);
   }
@@ -116,6 +118,62 @@ class Maker {
     };
     return std::ranges::any_of(sight_.root.corners, look_at) ||
            std::ranges::any_of(sight_.source, [&](const Edge& e) { return look_at(sight_.points[e.from]); });
+  }
+
+  // Heights err by less than 2^-46, so where the other end of the side before is so many times as high, this side falls
+  // towards the plane, and meets it at less than kFlat of its length beyond. Likewise the side after. A convex
+  // polygon has no more than one such place. No coordinate may exceed 1.
+  std::optional<NearHorizon> near_horizon(const Ring& ring) {
+    constexpr double kFlat = 0x1p-8, kHigh = 0x1p-24;
+    const Side above = Side::of(sight_.receiver);
+    double highest = 0.0;
+    std::vector<double> heights;
+    for (const Edge& side : ring) heights.push_back(above.height(sight_.points[side.from].at));
+    for (const double height : heights) highest = std::max(highest, height);
+    if (highest < kHigh) return std::nullopt;
+    const std::size_t n = ring.size();
+    const auto is_low = [&](std::size_t corner) { return heights[corner % n] < kFlat * highest; };
+    for (std::size_t i = 0; i < n; ++i) {
+      if (is_low(i) || !is_low(i + 1)) continue;
+      std::size_t count = 0;
+      while (is_low(i + count + 2)) ++count;
+      const Edge &before = ring[i], &after = ring[(i + count + 1) % n];
+      const bool is_steep = std::max(heights[(i + 1) % n], heights[(i + count + 1) % n]) <
+                            kFlat * std::min(heights[i], heights[(i + count + 2) % n]);
+      bool is_in_plane = true;
+      for (std::size_t k = 1; k <= count + 1; ++k) {
+        is_in_plane = is_in_plane && side_of(sight_.receiver, sight_.points[ring[(i + k) % n].from]) == 0;
+      }
+      if (count == 0 || !is_steep || is_in_plane) return std::nullopt;
+      const Edge in_plane = sight_.points.between_crossings(before, after, sight_.receiver, kByReceiver);
+      if (!is_beyond(in_plane, before.to, after.from)) return std::nullopt;
+      return NearHorizon{(i + 1) % n, count, in_plane};
+    }
+    return std::nullopt;
+  }
+
+  void widen_occluders() {
+    for (std::uint32_t o = 0; o < sight_.occluders.size(); ++o) {
+      const Occluder& occluder = sight_.occluders[o];
+      const std::optional<NearHorizon> near = near_horizon(occluder.ring);
+      if (!near) continue;
+      Ring ring;
+      const std::size_t n = occluder.ring.size();
+      for (std::size_t k = near->count; k < n; ++k) ring.push_back(occluder.ring[(near->first + k) % n]);
+      ring.front().from = near->in_plane.to;
+      ring.back().to = near->in_plane.from;
+      ring.push_back(near->in_plane);
+      sight_.widened.push_back({o, *near, {std::move(ring), occluder.plane}});
+    }
+  }
+
+  // Whether it leads as these corners do, and its ends are near them, in coordinates of at most 1.
+  [[nodiscard]] bool is_beyond(const Edge& edge, PointId from, PointId to) const {
+    const Vec3 &a = sight_.points[from].at, &b = sight_.points[to].at, &c = sight_.points[edge.from].at,
+               &d = sight_.points[edge.to].at;
+    const double least = 0.25 * kernel::distance(a, b);
+    return kernel::distance(a, c) < least && kernel::distance(b, d) < least &&
+           std::max(kernel::max_norm(c), kernel::max_norm(d)) <= 1.0;
   }
 
   // The index in Sight::solids; see the header.

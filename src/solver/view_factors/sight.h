@@ -44,6 +44,20 @@ struct Solid {
   std::vector<Ring> bases;  // in the receiver's plane, counter-clockwise as seen from its front
 };
 
+// Sides of a polygon, one after the other, that are in the receiver's plane or almost so, but not all in it: with the
+// sides before and after extended as far as this plane, the polygon would end in it.
+struct NearHorizon {
+  std::size_t first, count;  // by their places in the ring
+  Edge in_plane;             // instead of them
+};
+
+// An occluder that would end in the receiver's plane.
+struct WidenedOccluder {
+  std::uint32_t original;
+  NearHorizon near;
+  Occluder occluder;
+};
+
 // A receiver's points see a source's points, or all that lies in a direction, if the segment between them meets no
 // occluder. Refers to the scene.
 struct Sight {
@@ -53,12 +67,21 @@ struct Sight {
   Plane receiver;  // positive in front
   Cell root;       // the part of the receiver in front of the source's plane
   Ring source;     // the part of the source in front of the receiver's plane, counter-clockwise as seen from there
-  std::vector<Occluder> occluders;  // the parts in front of both planes
+  std::optional<NearHorizon> near_horizon;  // of the source
+  std::vector<Occluder> occluders;          // the parts in front of both planes
+  std::vector<WidenedOccluder> widened;     // of some of them
   std::vector<Solid> solids;
   PointId apex = 0;  // a point in front of the receiver's plane, of the source if there is one
 
   // What the occluders leave open of all directions is asked for: there is no source.
   [[nodiscard]] bool is_of_open() const { return source.empty(); }
+  // The occluders, then the widened ones.
+  [[nodiscard]] std::uint32_t shadow_count() const {
+    return static_cast<std::uint32_t>(occluders.size() + widened.size());
+  }
+  [[nodiscard]] const Occluder& shadow(std::uint32_t id) const {
+    return id < occluders.size() ? occluders[id] : widened[id - occluders.size()].occluder;
+  }
 };
 
 // A convex part of a patch: corners counter-clockwise as seen from the front, none in the middle of a straight side.

@@ -1,0 +1,138 @@
+// Rooms from CAD: faces that share no corners, each corner moved by 1e-15 to 3e-2. Their view factors are judged by
+// those of the room that was meant, as far as moved corners can change them, and by means of point factors.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "exactff/exact.h"
+#include "exactff/receiver.h"
+#include "exactff/view_factors.h"
+#include "generate/plain_scene.h"
+#include "generate/random.h"
+#include "property/closed_rooms.h"
+#include "support/random_scenes.h"
+
+namespace exactff::validation {
+namespace {
+
+using generate::PlainScene;
+using generate::Random;
+
+FloorPlan random_plan(Random& random) {
+  const double a = random.integer(2, 5), b = random.integer(2, 5);
+  const double c = random.integer(1, static_cast<int>(a) - 1), d = random.integer(1, static_cast<int>(b) - 1);
+  if (random.one_in(3)) return {{{0, 0}, {a, 0}, {a, b}, {0, b}}};
+  if (random.one_in(2)) return {{{0, 0}, {a, 0}, {a, b}, {c, b}, {c, d}, {0, d}}};
+  return {{{0, 0}, {a, 0}, {a, d}, {a + 1, d}, {a + 1, b}, {0, b}}};
+}
+
+// Every face with corners of its own, all within `moved` of where they were in each coordinate.
+PlainScene with_moved_corners(const PlainScene& room, double moved, std::uint64_t seed) {
+  Random random(seed);
+  PlainScene result;
+  for (const generate::PlainPatch& patch : room.patches) {
+    for (const generate::PlainFace& face : patch.faces) {
+      std::vector<Vec3> ring;
+      for (const std::uint32_t corner : face.rings.front()) {
+        Vec3 v = room.vertices[corner];
+        for (double* x : {&v.x, &v.y, &v.z}) *x += random.between(-moved, moved);
+        ring.push_back(v);
+      }
+      result.add_ring(result.patch(patch.name), ring);
+    }
+  }
+  return result;
+}
+
+double perimeter_of_all(const PlainScene& scene) {
+  double sum = 0.0;
+  for (const generate::PlainPatch& patch : scene.patches) {
+    for (const generate::PlainFace& face : patch.faces) {
+      const auto& ring = face.rings.front();
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Vec3 &a = scene.vertices[ring[i]], &b = scene.vertices[ring[(i + 1) % ring.size()]];
+        sum += std::hypot(b.x - a.x, b.y - a.y, b.z - a.z);
+      }
+    }
+  }
+  return sum;
+}
+
+PlainScene random_room(Random& random) {
+  PlainScene room;
+  const FloorPlan plan = random_plan(random);
+  add_room(room, prism(plan, 0.0, random.integer(1, 3)));
+  return room;
+}
+
+std::string any_patch(const PlainScene& scene, Random& random) {
+  return scene.patches[random.below(scene.patches.size())].name;
+}
+
+// A line that meets a face, but not the moved one, passes between their edges or ends between the two. The area between
+// edges is at most their length times how far corners move.
+TEST(AlmostClosedRooms, HaveTheFactorsOfTheRoomThatWasMeant) {
+  std::size_t cells = 0, meant_cells = 0, judged = 0, slow = 0;
+  for (std::uint64_t s = 0; s < scaled_count(40); ++s) {
+    Random random(seed_of(s));
+    const PlainScene room = random_room(random);
+    const double moved = std::pow(10.0, -15.0 + 10.0 * random.unit());
+    const Scene meant = generate::build(room);
+    const Scene scene = generate::build(with_moved_corners(room, moved, seed_of(s)));
+    const std::string from = any_patch(room, random), to = any_patch(room, random);
+    SCOPED_TRACE("seed " + std::to_string(seed_of(s)) + ", " + from + " to " + to + ", " + std::to_string(moved));
+    const double accuracy = std::max(1e-6, 1e4 * moved);
+    const ViewFactorOptions options{.accuracy = accuracy, .budget = 5000, .certify = random.one_in(2)};
+    const ViewFactor g = view_factor(meant, meant.select(from), meant.select(to), options);
+    const ViewFactor f = view_factor(scene, scene.select(from), scene.select(to), options);
+    const double most = 8.0 * moved * perimeter_of_all(room) / std::min(f.area_from, f.area_to) + 1e-12;
+    EXPECT_LE(f.lower, g.upper + most);
+    EXPECT_GE(f.upper, g.lower - most);
+    slow += f.accurate ? 0U : 1U;
+    cells += f.cells;
+    meant_cells += g.cells;
+    ++judged;
+  }
+  EXPECT_LE(slow, judged / 10);
+  EXPECT_LE(cells, 12 * meant_cells + 100 * judged) << meant_cells;
+}
+
+// Gaps so large that what passes them counts.
+TEST(AlmostClosedRooms, HoldMeansOfPoints) {
+  constexpr std::size_t kPoints = 1 << 11;
+  double largest = 0.0;
+  for (std::uint64_t s = 0; s < scaled_count(10); ++s) {
+    Random random(seed_of(s));
+    PlainScene room = random_room(random);
+    if (random.one_in(3)) add_thing(room, box({0.25, 0.25, 0.0}, {0.75, 0.5, 0.5}));
+    const double moved = std::pow(10.0, -3.0 + 1.5 * random.unit());
+    const Scene scene = generate::build(with_moved_corners(room, moved, seed_of(s)));
+    const Selection from = scene.select(any_patch(room, random)), to = scene.select(any_patch(room, random));
+    const std::vector<FaceId> faces = scene.faces_of(from);
+    const ExactSource source(scene, to);
+    std::vector<double> values;
+    for (const Receiver& receiver : sample_receivers(scene, faces, kPoints, seed_of(s))) {
+      values.push_back(exact_form_factor(scene, receiver, source).value);
+    }
+    const double n = static_cast<double>(kPoints), mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+    double squares = 0.0;
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    const double tolerance = 5.0 * std::sqrt(squares / n / (n - 1.0)) + 14.0 / n * moved + 1e-9;
+    for (const double accuracy : {1e-2, 1e-3}) {
+      const ViewFactor f = view_factor(scene, from, to, {.accuracy = accuracy, .budget = 2000, .certify = s % 2 == 0});
+      const double beyond = std::max({0.0, f.lower - mean, mean - f.upper}) / tolerance;
+      EXPECT_LE(beyond, 1.0) << "seed " << seed_of(s) << ' ' << scene.name_of(from) << " to " << scene.name_of(to)
+                             << ", moved by " << moved << ": [" << f.lower << ", " << f.upper << "], " << mean;
+      largest = std::max(largest, beyond);
+    }
+  }
+  RecordProperty("largest_deviation_over_tolerance", std::to_string(largest));
+}
+
+}  // namespace
+}  // namespace exactff::validation
