@@ -379,8 +379,7 @@ Command add_check(CLI::App& app) {
   command
       ->add_option(
           "TRUTH", args->truth,
-          "Table written by `exactff truth`, `matrix -o` or `radiosity -o`, or exact.csv of `exactff compare`; or an "
-          "image, .exr or .npy")
+          "Table written by exactff: of `truth`, `matrix -o`, `radiosity -o`, a report, ...; or an image, .exr or .npy")
       ->required()
       ->type_name("FILE")
       ->check(flags::is_read());

@@ -35,7 +35,7 @@ constexpr const char* kConvertFooter =
     "--triangulate cuts all faces into triangles. A face that is not exactly planar becomes the triangles that "
     "exactff\n"
     "takes it for.\n"
-    "A table (a truth file, a matrix, radiosities) is written as .csv, .npz (a NumPy archive with an array for each\n"
+    "A table that exactff wrote becomes .csv, .npz (a NumPy archive with an array for each\n"
     "column, and the head) or .jsonl (JSON lines, the first of which is the head).\n"
     "\n"
     "Example:\n"

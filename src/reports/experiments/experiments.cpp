@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <locale>
+#include <utility>
 
 #include "exactff/models.h"
 #include "files/stopwatch.h"
@@ -57,20 +57,18 @@ std::string slope_text(double slope) {
 
 std::string percent(double share) { return text::rounded(100.0 * share, 2) + " %"; }
 
-TableWriter::TableWriter(std::string_view about, std::initializer_list<std::string_view> columns) {
-  out_.imbue(std::locale::classic());
-  std::string_view rest = about;
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    out_ << "# " << rest.substr(0, end) << '\n';
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  table::CsvLine names(out_);
-  for (const std::string_view name : columns) names << name;
+table::Rows rows_of(std::string_view experiment, std::string about, std::initializer_list<table::Columns> columns) {
+  table::Head head;
+  head.set("about", std::move(about));
+  return {"experiment " + std::string(experiment), std::move(head), columns};
 }
 
-CsvFile TableWriter::finish(std::string file, std::string holds) const {
-  return {std::move(file), std::move(holds), out_.str()};
+CsvFile csv_file(table::Rows rows, std::string file, std::string holds) {
+  return {std::move(file), std::move(holds), table::csv_text(rows.take())};
+}
+
+table::Columns estimates(std::string_view names, std::string unit) {
+  return table::numbers(names, table::Strength::kEstimated, std::move(unit));
 }
 
 }  // namespace exactff::experiments

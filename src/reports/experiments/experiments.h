@@ -8,9 +8,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,7 +21,7 @@
 #include "page/chapter.h"
 #include "page/gnuplot.h"
 #include "study/settings.h"
-#include "table/csv.h"
+#include "table/rows.h"
 
 namespace exactff::experiments {
 
@@ -82,16 +82,12 @@ class Bench {
 // "1.5 %"
 [[nodiscard]] std::string percent(double share);
 
-// Writes a CSV file: comment lines (#) that describe it, the column names, rows.
-class TableWriter {
- public:
-  TableWriter(std::string_view about, std::initializer_list<std::string_view> columns);
-  [[nodiscard]] table::CsvLine row() { return table::CsvLine(out_); }
-  [[nodiscard]] CsvFile finish(std::string file, std::string holds) const;
-
- private:
-  std::ostringstream out_;
-};
+// `experiment`: its name. `about`: what the rows are.
+[[nodiscard]] table::Rows rows_of(std::string_view experiment, std::string about,
+                                  std::initializer_list<table::Columns> columns);
+[[nodiscard]] CsvFile csv_file(table::Rows rows, std::string file, std::string holds);
+// Columns of results.
+[[nodiscard]] table::Columns estimates(std::string_view names, std::string unit = {});
 
 // --- hemicube-scatter ---
 //

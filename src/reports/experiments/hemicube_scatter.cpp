@@ -14,6 +14,11 @@
 namespace exactff::experiments {
 namespace {
 
+using table::counts;
+using table::keys;
+using table::numbers;
+using table::Type;
+
 using text::counted;
 using text::rounded;
 
@@ -190,30 +195,34 @@ page::Figure error_figure(std::span<const ScatterPoint> points, const ScatterSiz
 // ------------------------------------------------------------------------------------------------------------- tables
 
 CsvFile point_table(std::span<const ScatterPoint> points, const ScatterSize& size) {
-  TableWriter table(
-      "every triangle of Karkanis' scenes: models karkanis:n=" + std::to_string(size.triangles) +
-          ",floor=0,seed=SCENE, seen from the origin along +z\nexact is correctly rounded, 0 where nothing can "
-          "be seen; form_factor is of the method hemicube:resolution=RESOLUTION",
-      {"scene", "triangle", "exact", "resolution", "form_factor"});
+  table::Rows rows =
+      rows_of("hemicube-scatter",
+              "every triangle of Karkanis' scenes: models karkanis:n=" + std::to_string(size.triangles) +
+                  ",floor=0,seed=SCENE, seen from the origin along +z; exact is correctly rounded, 0 where nothing can "
+                  "be seen; form_factor is of the method hemicube:resolution=RESOLUTION",
+              {keys("scene,triangle", Type::kCount), numbers("exact", table::Strength::kCertified),
+               keys("resolution", Type::kCount), estimates("form_factor")});
   for (const ScatterPoint& p : points) {
     for (std::size_t r = 0; r < p.hemicube.size(); ++r) {
-      table.row() << p.scene << p.triangle << p.exact << size.resolutions[r] << p.hemicube[r];
+      rows << p.scene << p.triangle << p.exact << size.resolutions[r] << p.hemicube[r];
     }
   }
-  return table.finish("hemicube-scatter.csv", "exact and hemicube form factor of every triangle");
+  return csv_file(std::move(rows), "hemicube-scatter.csv", "exact and hemicube form factor of every triangle");
 }
 
 CsvFile decade_table(std::span<const ScatterPoint> points, const ScatterSize& size) {
-  TableWriter table(
-      "normalised error |hemicube - exact| / exact of visible triangles, by decades of the exact form factor",
-      {"resolution", "from", "to", "visible", "missed", "median", "p99"});
+  table::Rows rows =
+      rows_of("hemicube-scatter",
+              "normalised error |hemicube - exact| / exact of visible triangles, by decades of the exact form factor",
+              {keys("resolution", Type::kCount), keys("from,to", Type::kNumber), counts("visible,missed"),
+               estimates("median,p99")});
   for (std::size_t r = 0; r < size.resolutions.size(); ++r) {
     for (const ScatterDecade& d : scatter_decades(points, r)) {
-      table.row() << size.resolutions[r] << std::pow(10.0, d.exponent) << std::pow(10.0, d.exponent + 1) << d.visible
-                  << d.missed << d.median << d.p99;
+      rows << size.resolutions[r] << std::pow(10.0, d.exponent) << std::pow(10.0, d.exponent + 1) << d.visible
+           << d.missed << d.median << d.p99;
     }
   }
-  return table.finish("hemicube-scatter-decades.csv", "hemicube error by decades of the form factor");
+  return csv_file(std::move(rows), "hemicube-scatter-decades.csv", "hemicube error by decades of the form factor");
 }
 
 }  // namespace

@@ -11,6 +11,11 @@
 namespace exactff::experiments {
 namespace {
 
+using table::counts;
+using table::keys;
+using table::numbers;
+using table::Type;
+
 using text::duration;
 using text::rounded;
 
@@ -219,29 +224,32 @@ page::Figure figure(const std::vector<TimeRow>& rows, int rays) {
 
 // ------------------------------------------------------------------------------------------------------------- tables
 
-CsvFile time_table(const std::vector<TimeRow>& rows, const TimesSize& size) {
-  TableWriter table(
+CsvFile time_table(const std::vector<TimeRow>& measured, const TimesSize& size) {
+  table::Rows rows = rows_of(
+      "karkanis-times",
       "seconds for the form factors of all triangles from one point: models karkanis:n=TRIANGLES,floor=0,"
-      "seed=1\none thread, after a first call unless that took more than a second; preparation of scene and sources "
-      "not included\nrays: " +
+      "seed=1; one thread, after a first call unless that took more than a second; preparation of scene and sources "
+      "not included; rays: " +
           std::to_string(size.rays) + " stratified rays to each, from the time of " + std::to_string(size.ray_patches) +
           " triangles or all",
-      {"triangles", "exact", "exact_without_shaft", "hemicube_100", "rays"});
-  for (const TimeRow& row : rows) {
-    table.row() << row.triangles << row.with_shaft << row.without_shaft << row.hemicube << row.rays;
+      {keys("triangles", Type::kCount), estimates("exact,exact_without_shaft,hemicube_100,rays", "s")});
+  for (const TimeRow& row : measured) {
+    rows << row.triangles << row.with_shaft << row.without_shaft << row.hemicube << row.rays;
   }
-  return table.finish("karkanis-times.csv", "time for all patches from one point against their number");
+  return csv_file(std::move(rows), "karkanis-times.csv", "time for all patches from one point against their number");
 }
 
-CsvFile work_table(const std::vector<WorkRow>& rows) {
-  TableWriter table(
-      "all triangles of karkanis:n=TRIANGLES,floor=0,seed=1 from one point\nlooked_at: pairs of a source and a "
-      "face that may hide it; differences: values that differ without the shaft, empty where not compared",
-      {"triangles", "visible", "sum", "looked_at", "looked_at_without_shaft", "differences"});
-  for (const WorkRow& row : rows) {
-    table.row() << row.triangles << row.visible << row.sum << row.looked_at << row.looked_at_without << row.differences;
+CsvFile work_table(const std::vector<WorkRow>& measured) {
+  table::Rows rows =
+      rows_of("karkanis-times",
+              "all triangles of karkanis:n=TRIANGLES,floor=0,seed=1 from one point; looked_at: pairs of a source and a "
+              "face that may hide it; differences: values that differ without the shaft, empty where not compared",
+              {keys("triangles", Type::kCount), counts("visible"), estimates("sum"), counts("looked_at"),
+               numbers("looked_at_without_shaft,differences", table::Strength::kProved)});
+  for (const WorkRow& row : measured) {
+    rows << row.triangles << row.visible << row.sum << row.looked_at << row.looked_at_without << row.differences;
   }
-  return table.finish("karkanis-times-work.csv", "work and values behind the times");
+  return csv_file(std::move(rows), "karkanis-times-work.csv", "work and values behind the times");
 }
 
 std::vector<LeftOut> left_out(const std::vector<TimeRow>& rows, const TimesSize& size) {

@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
-#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "exactff/methods.h"
 #include "exactff/study.h"
+#include "exactff/table.h"
 #include "page/chapter.h"
 
 namespace exactff::report {
@@ -53,14 +53,12 @@ std::vector<std::string> write(const StudyReport& report, const std::filesystem:
 
 // --- tables ---
 //
-// The CSV files of a study. Every file begins with comment lines (#) that state the version, the scene, the seeds and
-// everything else that its values depend on; then comes one header row. Doubles are the shortest decimals that read
-// back unchanged.
+// The tables of a study. Their heads state the scene, the seeds and everything else that the values depend on.
 
 struct StudyTable {
   std::string_view file;   // that of times ends in "timings.csv"; others have the same bytes on every run
   std::string_view holds;  // for the report's list of files
-  void (*write)(const Study& study, std::ostream& out);
+  table::Table (*make)(const Study& study);
   bool (*has_rows)(const Study& study);  // a table without rows is left out
 };
 
