@@ -247,7 +247,8 @@ std::vector<ScatterDecade> scatter_decades(std::span<const ScatterPoint> points,
   }
   std::vector<ScatterDecade> decades;
   for (const auto& [exponent, list] : errors) {
-    decades.push_back({exponent, list.size(), missed[exponent], kernel::median(list), kernel::percentile(list, 99.0)});
+    decades.push_back(
+        {exponent, list.size(), missed[exponent], kernel::median(list), kernel::nearest_rank(list, 0.99)});
   }
   return decades;
 }

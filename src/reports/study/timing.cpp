@@ -215,8 +215,8 @@ class Stopwatch {
     study_.timed = receivers_;
     std::ranges::sort(study_.timed);
     if (speeds.empty()) return;
-    study_.exact_fastest = kernel::percentile(speeds, 5.0);
-    study_.exact_slowest = kernel::percentile(speeds, 95.0);
+    study_.exact_fastest = kernel::nearest_rank(speeds, 0.05);
+    study_.exact_slowest = kernel::nearest_rank(speeds, 0.95);
   }
 
   void set_times(MethodCell& cell, const Rounds& rounds) {
@@ -228,19 +228,19 @@ class Stopwatch {
     const TimeSummary summary = summary_of(seconds);
     cell.seconds = summary.mean;
     if (summary.mean_partly > 0.0) cell.seconds_partly = summary.mean_partly;
-    cell.ratio_low = is_exact ? 1.0 : ratio_at(rounds, 25.0);
-    cell.ratio_high = is_exact ? 1.0 : ratio_at(rounds, 75.0);
+    cell.ratio_low = is_exact ? 1.0 : ratio_at(rounds, 0.25);
+    cell.ratio_high = is_exact ? 1.0 : ratio_at(rounds, 0.75);
     for (const std::size_t k : cell.settings) {
       study_.times[k] = summary;
       for (std::size_t p = 0; p < seconds.size(); ++p) study_.samples[k][receivers_[p]].seconds = seconds[p];
     }
   }
 
-  // The percentile of the ratios at each receiver, averaged like the times.
-  [[nodiscard]] double ratio_at(const Rounds& rounds, double percent) const {
+  // The quantile of the ratios at each receiver, averaged like the times.
+  [[nodiscard]] double ratio_at(const Rounds& rounds, double share) const {
     double sum = 0.0, exact = 0.0;
     for (std::size_t p = 0; p < rounds.ratios.size(); ++p) {
-      sum += kernel::percentile(rounds.ratios[p], percent) * exact_medians_[p];
+      sum += kernel::nearest_rank(rounds.ratios[p], share) * exact_medians_[p];
       exact += exact_medians_[p];
     }
     return sum / exact;
