@@ -13,7 +13,7 @@
 #include "cli/command.h"
 #include "cli/option_table.h"
 #include "cli/output.h"
-#include "flags/file_options.h"
+#include "flags/values.h"
 #include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"

@@ -8,15 +8,12 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/further_files.h"
-#include "cli/kept_work.h"
 #include "cli/output.h"
 #include "cli/process.h"
 #include "exactff/slips.h"
 #include "exactff/study.h"
 #include "files/file.h"
 #include "flags/comparison.h"
-#include "flags/file_options.h"
 #include "flags/receivers.h"
 #include "flags/values.h"
 #include "report/plan.h"

@@ -26,7 +26,7 @@
 #include "cli/process.h"
 #include "exactff/error.h"
 #include "exactff/version.h"
-#include "flags/file_options.h"
+#include "flags/values.h"
 #include "text/escape.h"
 
 namespace {

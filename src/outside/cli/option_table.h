@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "flags/file_options.h"
+#include "flags/values.h"
 
 namespace exactff::cli {
 

@@ -14,15 +14,12 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/further_files.h"
-#include "cli/kept_work.h"
 #include "cli/output.h"
 #include "cli/process.h"
 #include "cli/view_factor_words.h"
 #include "exactff/jobs.h"
 #include "exactff/version.h"
 #include "files/file.h"
-#include "flags/file_options.h"
 #include "flags/scene.h"
 #include "flags/values.h"
 #include "radiosity/narrowing.h"

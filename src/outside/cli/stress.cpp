@@ -8,7 +8,6 @@
 #include "cli/command.h"
 #include "cli/output.h"
 #include "cli/process.h"
-#include "flags/file_options.h"
 #include "flags/values.h"
 #include "report/plan.h"
 #include "text/escape.h"

@@ -10,14 +10,12 @@
 #include <optional>
 
 #include "cli/command.h"
-#include "cli/one_receiver.h"
 #include "cli/output.h"
 #include "cli/point.h"
 #include "cli/process.h"
 #include "exactff/render.h"
 #include "exactff/scene_files.h"
 #include "exactff/version.h"
-#include "flags/file_options.h"
 #include "flags/scene.h"
 #include "flags/values.h"
 #include "table/rows.h"

@@ -11,7 +11,6 @@
 #include <unordered_set>
 #include <utility>
 
-#include "flags/file_options.h"
 #include "flags/values.h"
 #include "scene/selections.h"
 #include "text/escape.h"

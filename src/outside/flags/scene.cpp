@@ -8,7 +8,7 @@
 #include "exactff/matrix.h"
 #include "exactff/models.h"
 #include "exactff/scene_files.h"
-#include "flags/file_options.h"
+#include "flags/values.h"
 #include "kernel/vec.h"
 #include "text/escape.h"
 #include "text/phrases.h"

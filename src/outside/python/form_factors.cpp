@@ -8,7 +8,7 @@
 #include "exactff/receiver.h"
 #include "flags/receivers.h"
 #include "python/bindings.h"
-#include "report/visibility_svg.h"
+#include "report/pictures.h"
 #include "truth/unit_normal.h"
 
 namespace exactff::python {

@@ -19,10 +19,9 @@
 #include "scene/scene.h"
 #include "scene/selections.h"
 #include "scene/solids.h"
-#include "slips/findings.h"
+#include "slips/flip_trial.h"
 #include "slips/overlaps.h"
 #include "slips/sight_lines.h"
-#include "slips/solid_angles.h"
 #include "text/phrases.h"
 #include "text/text_lines.h"
 

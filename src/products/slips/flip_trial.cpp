@@ -13,7 +13,6 @@
 #include "slips/overlaps.h"
 
 namespace exactff::slips {
-
 namespace {
 
 using kernel::difference;

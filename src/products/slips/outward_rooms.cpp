@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "scene/selections.h"
-#include "slips/findings.h"
+#include "slips/flip_trial.h"
 #include "slips/outlook.h"
 #include "text/phrases.h"
 

@@ -12,7 +12,7 @@
 #include "kernel/vec.h"
 #include "scene/scene.h"
 #include "scene/selections.h"
-#include "slips/findings.h"
+#include "slips/flip_trial.h"
 #include "text/phrases.h"
 #include "text/text_lines.h"
 

@@ -3,12 +3,15 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "exactff/geometry.h"
 #include "exactff/progress.h"
+#include "exactff/receiver.h"
+#include "exactff/scene.h"
 #include "files/file.h"
 
 namespace exactff::vtk {
@@ -36,5 +39,17 @@ enum class Format { kPolygons, kUnstructured };
 [[nodiscard]] Format format_of(const std::filesystem::path& file);
 
 void append(const DataSet& data, Format format, files::WholeFile& file, const Hooks& hooks);
+
+// --- Receivers and scenes as cells ---
+
+// The receivers in the order of their cells: those without a cell on a lattice first.
+[[nodiscard]] std::vector<std::size_t> cell_order(std::span<const Receiver> receivers);
+
+// The cells, and arrays that say which receiver each one is.
+[[nodiscard]] DataSet cells_of(const Scene& scene, std::span<const Receiver> receivers,
+                               const std::vector<std::size_t>& order);
+
+// The pieces of the faces, with patch, face and material.
+[[nodiscard]] DataSet cells_of(const Scene& scene);
 
 }  // namespace exactff::vtk

@@ -4,8 +4,10 @@
 // base64 text within the XML, little-endian, without compression.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <variant>
@@ -62,5 +64,12 @@ void write_faces(const Scene& scene, const std::vector<Field>& fields, std::vect
 
 // Throws InputError unless the name ends in .vtp or .vtu.
 void require_extension(const std::filesystem::path& file);
+
+// --- Numbers of patches and faces as a field of the scene's faces ---
+
+// For write_faces: number c of a face is value(i, c) of the last selection i that has the face, and NaN if none has it.
+[[nodiscard]] Field field_of_faces(const Scene& scene, std::string name, std::span<const Selection> selections,
+                                   std::size_t components,
+                                   const std::function<double(std::size_t i, std::size_t c)>& value);
 
 }  // namespace exactff::vtk

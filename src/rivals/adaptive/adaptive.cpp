@@ -18,7 +18,6 @@
 #include <span>
 #include <string>
 
-#include "adaptive/patch_visibility.h"
 #include "adaptive/sampled_scene.h"
 #include "adaptive/sub_patch.h"
 #include "kernel/float_environment.h"

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "exactff/adaptive.h"
 #include "exactff/geometry.h"
 #include "exactff/scene.h"
 #include "kernel/expect.h"
@@ -144,9 +145,7 @@ struct SourceRoots {
 [[nodiscard]] SourceRoots make_source_roots(const Scene& scene, const std::vector<Vec3>& points,
                                             const Selection& selection);
 
-// --- Closed form ---
-
-// Tampieri's Eq. (4): the unoccluded form factor from the origin to a polygon.
+// --- Tampieri's Eq. (4): the unoccluded form factor from the origin to a polygon ---
 
 // In double, by atan2; an estimate with a relative error of about 1e-15 r/h for a patch of size h at distance r.
 // Requires a unit normal and a patch above the horizon of x.
@@ -157,3 +156,34 @@ struct SourceRoots {
 [[nodiscard]] double literal_unoccluded_form_factor(const SubPatch& s, const Vec3& unit_normal);
 
 }  // namespace exactff::adaptive
+
+namespace exactff {
+
+// --- Patch visibility ---
+
+// A source of the visible fraction V of a sub-patch, used by the recursion in place of shadow rays.
+
+namespace adaptive {
+
+class PatchVisibility {
+ public:
+  virtual ~PatchVisibility() = default;
+  // The sub-patches in the following calls are parts of this piece of the scene.
+  virtual void start(std::uint32_t piece) = 0;
+  // V in [0, 1]; the recursion ends at 0 and at 1. Corners are relative to x, in scaled coordinates.
+  virtual double fraction(const SubPatch& s) = 0;
+};
+
+}  // namespace adaptive
+
+struct AdaptiveInside {
+  using SourceData = AdaptiveSource::Data;
+  // As AdaptiveSolver::form_factor, but where shaft culling leaves V undecided, `visibility` computes V instead of
+  // rays.
+  [[nodiscard]] static AdaptiveResult form_factor(const AdaptiveSolver& solver, const Receiver& receiver,
+                                                  const AdaptiveSource& source, double largest_rho_b,
+                                                  const AdaptiveOptions& options,
+                                                  adaptive::PatchVisibility& visibility);
+};
+
+}  // namespace exactff

@@ -9,7 +9,6 @@
 #include <sstream>
 
 #include "stress/families.h"
-#include "stress/formulas.h"
 #include "support/program.h"
 
 namespace exactff::stress {

@@ -1,12 +1,28 @@
+#include "vtk/vtk.h"
+
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "files/parallel.h"
 #include "kernel/float_environment.h"
-#include "vtk/cells.h"
 #include "vtk/data_set.h"
-#include "vtk/vtk.h"
 
 namespace exactff::vtk {
+
+Field field_of_faces(const Scene& scene, std::string name, std::span<const Selection> selections,
+                     std::size_t components, const std::function<double(std::size_t, std::size_t)>& value) {
+  std::vector<double> values(components * scene.faces().size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < selections.size(); ++i) {
+    for (const FaceId face : scene.faces_of(selections[i])) {
+      for (std::size_t c = 0; c < components; ++c) values[components * index_of(face) + c] = value(i, c);
+    }
+  }
+  return {std::move(name), components, std::move(values)};
+}
+
+// --- Write ---
+
 namespace {
 
 template <class T>
@@ -55,10 +71,6 @@ void add(std::vector<Rgb>& sum, const std::vector<Rgb>& more) {
     sum[i] = {sum[i].r + more[i].r, sum[i].g + more[i].g, sum[i].b + more[i].b};
   }
 }
-
-}  // namespace
-
-namespace {
 
 std::vector<double> components_of(const std::vector<Vec3>& vectors) {
   std::vector<double> numbers;
