@@ -3,10 +3,9 @@
 #include <iostream>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <vector>
 
-#include "cli/command.h"
+#include "cli/commands.h"
 #include "cli/output.h"
 #include "exactff/scene_files.h"
 #include "exactff/table.h"

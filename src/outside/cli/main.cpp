@@ -20,8 +20,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/command.h"
-#include "cli/option_table.h"
+#include "cli/commands.h"
 #include "cli/output.h"
 #include "cli/process.h"
 #include "exactff/error.h"

@@ -8,14 +8,12 @@
 #include <span>
 #include <utility>
 
-#include "cli/command.h"
+#include "cli/commands.h"
 #include "cli/output.h"
 #include "cli/process.h"
 #include "exactff/render.h"
 #include "exactff/slips.h"
 #include "exactff/study.h"
-#include "flags/receivers.h"
-#include "flags/values.h"
 #include "kernel/vec.h"
 #include "scene/selections.h"
 #include "text/escape.h"

@@ -4,20 +4,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdint>
-#include <filesystem>
 #include <iostream>
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
-#include "cli/command.h"
+#include "cli/commands.h"
 #include "cli/output.h"
 #include "cli/process.h"
 #include "exactff/matrix.h"
 #include "exactff/slips.h"
-#include "flags/receivers.h"
 #include "flags/scene.h"
 #include "flags/values.h"
 #include "text/escape.h"

@@ -7,9 +7,8 @@
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <optional>
 
-#include "cli/command.h"
+#include "cli/commands.h"
 #include "cli/output.h"
 #include "cli/point.h"
 #include "cli/process.h"
@@ -21,7 +20,6 @@
 #include "table/rows.h"
 #include "text/json_document.h"
 #include "text/names.h"
-#include "text/number_text.h"
 #include "text/phrases.h"
 #include "vtk/vtk.h"
 #include "whole_view/referee.h"

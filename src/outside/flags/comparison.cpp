@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <initializer_list>
 #include <iterator>
 #include <optional>
 #include <utility>
 
 #include "flags/values.h"
 #include "kernel/float_environment.h"
-#include "text/escape.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"

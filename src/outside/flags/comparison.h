@@ -10,7 +10,6 @@
 
 #include "exactff/error.h"
 #include "exactff/study.h"
-#include "flags/receivers.h"
 #include "flags/scene.h"
 #include "report/plan.h"
 

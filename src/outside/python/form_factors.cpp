@@ -6,7 +6,7 @@
 #include "exactff/batch.h"
 #include "exactff/methods.h"
 #include "exactff/receiver.h"
-#include "flags/receivers.h"
+#include "flags/scene.h"
 #include "python/bindings.h"
 #include "report/pictures.h"
 #include "truth/unit_normal.h"

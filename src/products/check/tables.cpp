@@ -12,7 +12,6 @@
 #include "matrix/columns.h"
 #include "table/csv.h"
 #include "text/names.h"
-#include "text/phrases.h"
 
 namespace exactff::check {
 namespace {

@@ -21,7 +21,6 @@
 #include <string>
 #include <string_view>
 
-#include "exactff/error.h"
 #include "exactff/exr.h"
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"

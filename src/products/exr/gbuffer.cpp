@@ -15,7 +15,6 @@
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"
 #include "receivers/own_pieces.h"
-#include "text/escape.h"
 #include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"

@@ -4,7 +4,6 @@
 
 #include "files/numpy.h"
 #include "kernel/poll.h"
-#include "text/phrases.h"
 #include "text/refuse.h"
 
 namespace exactff::exr {

@@ -5,12 +5,10 @@
 
 #include "exactff/version.h"
 #include "jobs/kept_work.h"
-#include "kernel/float_environment.h"
 #include "scene/scene.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
-#include "text/text_lines.h"
 
 namespace exactff::render {
 

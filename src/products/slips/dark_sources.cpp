@@ -1,7 +1,6 @@
 // Sources that give 0 at every receiver. The proof for a receiver is an exact form factor of 0 without occluders, or
 // with those faces alone as occluders that come within the tolerance of the receiver: more of them never raise it.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 

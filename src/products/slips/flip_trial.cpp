@@ -10,7 +10,6 @@
 #include <iterator>
 
 #include "kernel/vec.h"
-#include "slips/overlaps.h"
 
 namespace exactff::slips {
 namespace {

@@ -21,6 +21,16 @@ using table::keys;
 using table::texts;
 using table::Type;
 
+// A slope with two decimals and a true minus sign.
+std::string slope_text(double slope) {
+  const long hundredths = std::lround(std::abs(slope) * 100.0);
+  const std::string digits = std::to_string(100 + hundredths % 100).substr(1);
+  return (slope < 0.0 && hundredths > 0 ? "−" : "") + std::to_string(hundredths / 100) + '.' + digits;
+}
+
+// "1.5 %"
+std::string percent(double share) { return text::rounded(100.0 * share, 2) + " %"; }
+
 using text::counted;
 using text::rounded;
 

@@ -8,7 +8,6 @@
 #include "kernel/statistics.h"
 #include "page/gnuplot.h"
 #include "report/report.h"
-#include "report/verdicts.h"
 #include "study/settings.h"
 #include "study/statistics.h"
 #include "text/escape.h"

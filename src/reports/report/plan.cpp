@@ -14,8 +14,6 @@
 #include "page/chapter.h"
 #include "page/output_folder.h"
 #include "report/report.h"
-#include "report/verdicts.h"
-#include "text/escape.h"
 #include "text/hashes.h"
 #include "text/phrases.h"
 #include "text/refuse.h"

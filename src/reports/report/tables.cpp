@@ -4,7 +4,6 @@
 
 #include "exactff/version.h"
 #include "report/report.h"
-#include "report/verdicts.h"
 #include "study/settings.h"
 #include "study/statistics.h"
 #include "table/rows.h"

@@ -382,7 +382,8 @@ class PageWriter {
   void how_to_read() {
     text_ += heading("The families");
     text_ += paragraph(
-        "Each family opens to its figures and values. Stiffness grows in steps, above 10<sup>16</sup> in steps of "
+        "Each family opens to its figures; values.csv has every value. Stiffness grows in steps, above 10<sup>16</sup> "
+        "in steps of "
         "twenty decades; families end before F leaves the range of normal doubles. Eq. (4) in double gets the exact "
         "visible region, so difficulties in finding the region do not affect it.");
     text_ += paragraph(
@@ -402,7 +403,7 @@ class PageWriter {
     if (const int bits = result.rows.front().precision_bits; bits > 0 && !precision_changes(result)) {
       content += paragraph("The proof needed " + std::to_string(bits) + " bits in every scene.");
     }
-    content += page::fold("Every value", values_table(result) + '\n') + "</div>\n";
+    content += "</div>\n";
     const bool agrees = std::ranges::all_of(result.rows, &Row::agrees);
     text_ += page::fold(html(family.title) + (agrees ? "" : ": <b>disagrees with the truth</b>"), content);
   }
@@ -414,22 +415,6 @@ class PageWriter {
       group += "<figure id=\"" + figure.id + "\">\n<h3>" + html(figure.title) + "</h3>\n" + svg + "\n</figure>\n";
     }
     return group.empty() ? group : "<div class=\"figures maps\">\n" + group + "</div>\n";
-  }
-
-  static std::string values_table(const FamilyResult& result) {
-    HtmlTable table(HtmlTable::Shape::kWide);
-    table.columns({"stiffness", "form factor", "status", "exact, bits", "edges", "exact, time"});
-    for (Method method : kMethods) table.column("error, " + html(short_name_of(method)));
-    for (const Row& row : result.rows) {
-      const Answer& exact = row.of(Method::kExact);
-      table.row();
-      table.cells({stiffness_text(row.stiffness), text::shortest(exact.value),
-                   row.agrees ? html(exactff::to_string(row.status)) : "<b>disagrees with the truth</b>",
-                   std::to_string(row.precision_bits), std::to_string(row.edges),
-                   page::prose(text::duration(exact.seconds))});
-      for (Method method : kMethods) table.cell(error_text(row.of(method)));
-    }
-    return table.text();
   }
 
   void define(const char* term, const char* meaning) {

@@ -11,12 +11,9 @@
 #include "exactff/adaptive.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <limits>
-#include <optional>
 #include <span>
-#include <string>
 
 #include "adaptive/sampled_scene.h"
 #include "adaptive/sub_patch.h"

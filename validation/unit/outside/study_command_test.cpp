@@ -169,7 +169,7 @@ TEST_F(NamedMethods, OneSettingIsComparedWithTheExactValues) {
   EXPECT_NE(page.find("<p class=\"verdict\">Use the exact method"), std::string::npos);
   EXPECT_NE(page.find("hemicube, resolution 64.</strong>"), std::string::npos) << "the pictures show it";
   EXPECT_NE(page.find("the comparison is about named methods (--sweep runs it, too)"), std::string::npos);
-  EXPECT_EQ(page.find("Every setting of Tampieri’s algorithm"), std::string::npos);
+  EXPECT_EQ(page.find("Tampieri’s algorithm: tolerance and error"), std::string::npos);
 }
 
 TEST_F(NamedMethods, OptionsWithoutEffectAreRefused) {
