@@ -3,15 +3,12 @@
 #include <algorithm>
 
 namespace exactff::table {
-namespace {
 
 Columns joined(std::initializer_list<Columns> lists) {
   Columns all;
   for (const Columns& list : lists) all.insert(all.end(), list.begin(), list.end());
   return all;
 }
-
-}  // namespace
 
 Columns columns(std::string_view names, const Column& like) {
   Columns list;

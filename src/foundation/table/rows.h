@@ -35,6 +35,8 @@ using Columns = std::vector<Column>;
   return columns(names, {.name = {}, .type = type, .key = true});
 }
 
+[[nodiscard]] Columns joined(std::initializer_list<Columns> lists);
+
 // A row begins with the first value after the last one of the row before.
 class Rows {
  public:

@@ -453,13 +453,6 @@ std::string is_a_number(const std::string& text) {
                                                                     : "'" + text + "' is not a finite decimal number";
 }
 
-std::string is_a_tolerance(const std::string& text) {
-  const text::ParsedNumber number = text::parse_number(text);
-  return number.fault == text::NumberFault::kNone && number.value >= 0.0
-             ? ""
-             : "'" + text + "' is not a finite decimal number of at least 0";
-}
-
 void add_receiver_flags(CLI::App& app, PointArguments& args) {
   args.receiver.add_to(app);
   app.add_option("--source", args.sources,
@@ -513,10 +506,10 @@ void add_adaptive_flags(CLI::App& app, PointArguments& args) {
                "does not split further");
   app.add_option("--eps-b", options.eps_b, "Its tolerance eps_B, a radiosity for each leaf")
       ->capture_default_str()
-      ->check(is_a_tolerance);
+      ->check(flags::is_not_negative);
   app.add_option("--eps-a", options.eps_a, "Its tolerance eps_A, the area below which nothing is split")
       ->capture_default_str()
-      ->check(is_a_tolerance);
+      ->check(flags::is_not_negative);
   app.add_option("--rays", options.rays, "Its number of shadow rays per undecided leaf")
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 20));

@@ -87,6 +87,13 @@ std::string is_positive(const std::string& text) {
                                                                         : "'" + text + "' is not a positive number";
 }
 
+std::string is_not_negative(const std::string& text) {
+  const text::ParsedNumber number = text::parse_number(text);
+  return number.fault == text::NumberFault::kNone && number.value >= 0.0
+             ? ""
+             : "'" + text + "' is not a finite decimal number of at least 0";
+}
+
 std::vector<Selection> selections_named(const Scene& scene, const std::vector<std::string>& texts) {
   std::vector<Selection> selections;
   for (const std::string& text : texts) {

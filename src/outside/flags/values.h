@@ -30,6 +30,7 @@ std::optional<Whole> whole_number(std::string_view text) {
 
 // A check of a flag's value.
 [[nodiscard]] std::string is_positive(const std::string& text);
+[[nodiscard]] std::string is_not_negative(const std::string& text);
 
 // What the help of such a flag says.
 inline constexpr const char* kNamesHelp = "; can be repeated, or separate names by commas; * ? [...] as in file names";

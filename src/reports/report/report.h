@@ -59,8 +59,10 @@ std::vector<std::string> write(const StudyReport& report, const std::filesystem:
 struct StudyTable {
   std::string_view file;   // that of times ends in "timings.csv"; others have the same bytes on every run
   std::string_view holds;  // for the report's list of files
-  table::Table (*make)(const Study& study);
+  table::Table (*fill)(const Study& study, table::Head head);
   bool (*has_rows)(const Study& study);  // a table without rows is left out
+
+  [[nodiscard]] table::Table make(const Study& study) const;
 };
 
 // In the order of the report's list.

@@ -36,15 +36,15 @@ std::string joined_names(const Scene& scene, std::span<const Selection> selectio
   return names;
 }
 
-// `what`: the rows are.
-table::Head head_of(const Study& study, std::string_view what) {
+// `holds`: as in the report's list of files.
+table::Head head_of(const Study& study, std::string_view holds) {
   const study::Request& request = study.request;
   const Sweeps& sweeps = request.sweeps;
   const auto number = [](double v) { return text::shortest(v); };
   const auto whole = [](auto v) { return std::to_string(v); };
   const auto name = [](auto v) { return to_string(v); };
   table::Head head;
-  head.set("about", std::string(what));
+  head.set("about", std::string(holds));
   head.set("scene", request.scene_name);
   head.set("scene_hash", request.scene->hash());
   const auto set = [&](std::string_view word, std::vector<std::string> list) {
@@ -86,13 +86,10 @@ Columns certified(std::string_view names) { return numbers(names, Strength::kCer
 Columns place() { return numbers("x,y,z", Strength::kGiven, "length"); }
 Columns setting() { return keys("setting", Type::kCount); }
 Columns parameters() {
-  Columns list = texts("variant,pattern");
-  for (const Columns& more : {keys("seed", Type::kCount), numbers("eps_b", Strength::kGiven, "Ke"),
-                              numbers("eps_a", Strength::kGiven, "area"), keys("rays_per_leaf", Type::kCount)}) {
-    list.push_back(more.front());
-    list.back().key = false;
-  }
-  return list;
+  const table::Column count{.name = {}, .type = Type::kCount};
+  return table::joined({texts("variant,pattern"), table::columns("seed", count),
+                        numbers("eps_b", Strength::kGiven, "Ke"), numbers("eps_a", Strength::kGiven, "area"),
+                        table::columns("rays_per_leaf", count)});
 }
 
 // Setting numbers start at 1.
@@ -101,10 +98,10 @@ void put_setting(Rows& rows, const Study& study, std::size_t k) {
   rows << k + 1 << to_string(s.variant) << to_string(s.pattern) << s.seed << s.eps_b << s.eps_a << s.rays;
 }
 
-Table exact_table(const Study& study) {
+Table exact_table(const Study& study, table::Head head) {
   const Scene& scene = *study.request.scene;
   Rows rows(
-      "compare exact", head_of(study, "exact values"),
+      "compare exact", std::move(head),
       {keys("receiver"), texts("on"), place(), numbers("nx,ny,nz", Strength::kGiven, "of any length"), keys("source"),
        certified("exact"), numbers("lower,upper", Strength::kProved), texts("status,sight", Strength::kProved),
        certified("visible_fraction"), estimates("radiosity_r,radiosity_g,radiosity_b", "Ke")});
@@ -123,12 +120,12 @@ Table exact_table(const Study& study) {
   return rows.take();
 }
 
-Table value_table(const Study& study) {
+Table value_table(const Study& study, table::Head head) {
   std::string reasons;
   for (std::size_t r = 0; r < kLeafReasonCount; ++r) {
     reasons += (r > 0 ? ",leaves_" : "leaves_") + column_name(to_string(static_cast<LeafReason>(r)));
   }
-  Rows rows("compare values", head_of(study, "values"),
+  Rows rows("compare values", std::move(head),
             {keys("receiver"), texts("on"), place(), texts("source"), setting(), parameters(), certified("exact"),
              estimates("approximate,error"), estimates("exact_radiosity,radiosity_error", "Ke"),
              counts("leaves,rays,shaft_tests"), counts(reasons), counts("silent_leaves,wrong_leaves"),
@@ -152,8 +149,8 @@ Table value_table(const Study& study) {
 
 void put_statistics(Rows& rows, const ErrorStatistics& s) { rows << s.rms << s.mean << s.p99 << s.worst; }
 
-Table summary_table(const Study& study) {
-  Rows rows("compare summary", head_of(study, "summary"),
+Table summary_table(const Study& study, table::Head head) {
+  Rows rows("compare summary", std::move(head),
             {setting(), parameters(), counts("receivers"), estimates("rms_f,mean_f,p99_f,worst_f"),
              estimates("rms_radiosity,mean_radiosity,p99_radiosity,worst_radiosity", "Ke"), counts("violations"),
              estimates("share_violating"), counts("leaves,rays,silent_leaves,wrong_leaves,silent_receivers"),
@@ -171,8 +168,8 @@ Table summary_table(const Study& study) {
   return rows.take();
 }
 
-Table timing_table(const Study& study) {
-  Rows rows("compare timings", head_of(study, "time of single calls, one thread at work"),
+Table timing_table(const Study& study, table::Head head) {
+  Rows rows("compare timings", std::move(head),
             {keys("receiver"), texts("on"), keys("setting"), estimates("seconds", "s")});
   for (const std::size_t i : study.timed) {
     const Receiver& receiver = study.request.receivers[i];
@@ -188,8 +185,7 @@ Table timing_table(const Study& study) {
 
 void put_times(Rows& rows, const TimeSummary& t) { rows << t.median << t.mean << t.median_partly << t.mean_partly; }
 
-Table summary_timing_table(const Study& study) {
-  table::Head head = head_of(study, "time per receiver, in seconds, one thread at work");
+Table summary_timing_table(const Study& study, table::Head head) {
   head.set("set_up_exact", study.exact_setup_seconds);
   head.set("set_up_rays", study.ray_setup_seconds);
   Rows rows("compare summary timings", std::move(head),
@@ -223,8 +219,8 @@ void put_choice(Rows& rows, const Study& study, const MethodCell& cell) {
   rows << choice.method->name << choice.settings.text();
 }
 
-Table method_table(const Study& study) {
-  Rows rows("compare methods", head_of(study, "methods against one another at chosen receivers; errors in radiosity"),
+Table method_table(const Study& study, table::Head head) {
+  Rows rows("compare methods", std::move(head),
             {keys("method,setting"), counts("seeds,receivers"), estimates("work"),
              estimates("rms,mean,p99,worst,rms_partly_hidden,rms_visible", "Ke"), estimates("rms_over_brightest"),
              counts("not_a_number")});
@@ -239,9 +235,8 @@ Table method_table(const Study& study) {
   return rows.take();
 }
 
-Table seed_table(const Study& study) {
-  Rows rows("compare seeds",
-            head_of(study, "one row per method, setting and seed; errors in radiosity at the chosen receivers"),
+Table seed_table(const Study& study, table::Head head) {
+  Rows rows("compare seeds", std::move(head),
             {keys("method,setting"), keys("seed", Type::kCount), estimates("rms,mean,p99,worst", "Ke")});
   for (const MethodCell& cell : study.methods.cells) {
     for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
@@ -253,9 +248,8 @@ Table seed_table(const Study& study) {
   return rows.take();
 }
 
-Table method_value_table(const Study& study) {
-  Rows rows("compare method values",
-            head_of(study, "one row per method, setting and chosen receiver, with the first seed"),
+Table method_value_table(const Study& study, table::Head head) {
+  Rows rows("compare method values", std::move(head),
             {keys("method,setting"), keys("seed", Type::kCount), keys("receiver"), certified("exact"),
              estimates("approximate,error"), estimates("radiosity_error", "Ke")});
   for (const MethodCell& cell : study.methods.cells) {
@@ -270,11 +264,9 @@ Table method_value_table(const Study& study) {
   return rows.take();
 }
 
-Table slope_table(const Study& study) {
-  Rows rows(
-      "compare slopes",
-      head_of(study, "error = c * work^exponent, fitted over the settings of a method; 95 % confidence intervals"),
-      {keys("method,where"), estimates("exponent,low,high"), counts("seeds,settings")});
+Table slope_table(const Study& study, table::Head head) {
+  Rows rows("compare slopes", std::move(head),
+            {keys("method,where"), estimates("exponent,low,high"), counts("seeds,settings")});
   for (std::size_t l = 0; l < study.methods.ladders.size(); ++l) {
     const auto put = [&](const char* where, const std::optional<Slope>& slope) {
       if (!slope) return;
@@ -287,16 +279,14 @@ Table slope_table(const Study& study) {
   return rows.take();
 }
 
-Table receiver_table(const Study& study) {
+Table receiver_table(const Study& study, table::Head head) {
   Columns errors;
   for (const MethodField& field : study.methods.fields) {
     errors.push_back({choice_of(study, field.ladder, field.rung).text(), Type::kNumber, "Ke", Strength::kEstimated});
   }
-  Rows rows(
-      "compare receivers",
-      head_of(study, "one row per receiver: what it sees, and the radiosity error of each method's middle setting"),
-      {keys("receiver"), place(), texts("sight", Strength::kProved), certified("visible_fraction"),
-       estimates("radiosity", "Ke"), estimates("distance_to_shadow_edge", "length"), errors});
+  Rows rows("compare receivers", std::move(head),
+            {keys("receiver"), place(), texts("sight", Strength::kProved), certified("visible_fraction"),
+             estimates("radiosity", "Ke"), estimates("distance_to_shadow_edge", "length"), errors});
   for (std::size_t i = 0; i < study.exact.size(); ++i) {
     const ExactRow& exact = study.exact[i];
     rows << study.request.receivers[i].id << study.request.receivers[i].point << to_string(exact.sight)
@@ -307,9 +297,9 @@ Table receiver_table(const Study& study) {
   return rows.take();
 }
 
-Table profile_table(const Study& study) {
+Table profile_table(const Study& study, table::Head head) {
   const Profile& profile = *study.profile;
-  table::Head head = head_of(study, "radiosity along " + profile.where + ", largest channel");
+  head.set("along", profile.where);
   head.set("visibility_changes_at", listed(profile.kinks, [](double at) { return text::shortest(at); }));
   Columns curves;
   for (const Profile::Curve& curve : profile.others) {
@@ -325,8 +315,7 @@ Table profile_table(const Study& study) {
   return rows.take();
 }
 
-Table method_timing_table(const Study& study) {
-  table::Head head = head_of(study, "seconds per receiver and all sources, one thread at work");
+Table method_timing_table(const Study& study, table::Head head) {
   if (const std::string drift = drift_warning(study); !drift.empty()) head.set("drift", drift);
   Rows rows("compare method timings", std::move(head),
             {keys("method,setting"), estimates("seconds,seconds_partly_hidden,seconds_set_up", "s"),
@@ -397,25 +386,30 @@ std::vector<vtk::Field> fields_of(const Study& study) {
 
 }  // namespace
 
+table::Table StudyTable::make(const Study& study) const { return fill(study, head_of(study, holds)); }
+
 const std::vector<StudyTable>& tables() {
   static const std::vector<StudyTable> kTables = {
       {"values.csv", "one row per receiver and setting: exact and approximate value, errors, work", value_table,
        has_settings},
       {"exact.csv", "one row per receiver and source: the certified value with its bounds", exact_table, always},
       {"summary.csv", "one row per setting: the error statistics", summary_table, has_settings},
-      {"timings.csv", "one row per receiver that was timed and method: the time of a single call", timing_table,
-       always},
+      {"timings.csv", "one row per receiver that was timed and method: the time of a single call, one thread at work",
+       timing_table, always},
       {"summary_timings.csv", "one row per setting: time per receiver, and that of the exact method",
        summary_timing_table, has_settings},
-      {"methods.csv", "one row per method and setting at chosen receivers: work and error statistics over the seeds",
+      {"methods.csv", "one row per method and setting at chosen receivers: work and errors in radiosity over the seeds",
        method_table, has_cells},
       {"method_seeds.csv", "the same for every seed", seed_table, has_cells},
       {"method_values.csv", "the values of the first seed, receiver by receiver", method_value_table, has_cells},
-      {"slopes.csv", "how the error falls with the work, with confidence intervals", slope_table, has_cells},
-      {"receivers.csv", "one row per receiver: visibility of the source, and the error of each method", receiver_table,
-       has_fields},
-      {"profile.csv", "the radiosity along a line, exact and by other methods", profile_table, has_profile},
-      {"method_timings.csv", "one row per method and setting: seconds per receiver", method_timing_table, has_cells},
+      {"slopes.csv", "how the error falls with the work: error = c * work^exponent, with 95 % confidence intervals",
+       slope_table, has_cells},
+      {"receivers.csv", "one row per receiver: what it sees, and the radiosity error of each method's middle setting",
+       receiver_table, has_fields},
+      {"profile.csv", "the radiosity along a line, largest channel, exact and by other methods", profile_table,
+       has_profile},
+      {"method_timings.csv", "one row per method and setting: seconds per receiver and all sources, one thread at work",
+       method_timing_table, has_cells},
   };
   return kTables;
 }
