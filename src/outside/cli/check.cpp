@@ -12,7 +12,7 @@
 #include "cli/output.h"
 #include "cli/process.h"
 #include "exactff/render.h"
-#include "exr/other_image.h"
+#include "exr/exr_file.h"
 #include "flags/values.h"
 #include "text/csv_lines.h"
 #include "text/escape.h"

@@ -15,7 +15,7 @@
 #include "check/images.h"
 #include "check/report.h"
 #include "check/tables.h"
-#include "exr/other_image.h"
+#include "exr/exr_file.h"
 #include "files/file.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"

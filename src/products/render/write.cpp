@@ -9,7 +9,7 @@
 
 #include "exactff/exr.h"
 #include "exactff/render.h"
-#include "exr/other_image.h"
+#include "exr/exr_file.h"
 #include "files/file.h"
 #include "kernel/float_environment.h"
 #include "text/escape.h"
