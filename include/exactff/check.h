@@ -68,8 +68,8 @@ struct Truth {
   [[nodiscard]] const std::string& face_of(const TruthRow& row) const { return faces[row.on]; }
 };
 
-// Reads any table that exactff wrote, in any of its formats; or a CSV file with the columns receiver (or id) and exact,
-// such as exact.csv of `exactff compare`. `column` names the column with the true values; empty stands for exact,
+// Reads any table that exactff wrote, in any of its formats; or a CSV file with the columns receiver (or id) and exact.
+// `column` names the column with the true values; empty stands for exact,
 // factor or radiosity. Of a table, the key columns identify the rows; further keys than two are joined with the second.
 // The bounds of NAME are lower and upper for these three, else NAME_lower and NAME_upper (total_lower_r for total_r);
 // NAME_status or status, and claim, say how a row is judged. Other files may have source, on, x,y,z, nx,ny,nz, lower,

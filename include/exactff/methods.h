@@ -36,7 +36,7 @@
 //                        .settings = {number_setting("scale", 1.0, 0.0, 10.0, "a factor on everything")},
 //                        .prepare = [](const Scene& scene) { return std::make_unique<GuessOnScene>(scene); }});
 //
-// Inside the library a method is one file in src/rivals/methods and one line in src/rivals/methods/list.h.
+// Inside the library a method is one function in src/rivals/methods, in the list of registry.cpp.
 #pragma once
 
 #include <array>

@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "cli/command.h"
+#include "cli/commands.h"
 #include "exactff/methods.h"
 #include "exactff/models.h"
 #include "stress/stress.h"

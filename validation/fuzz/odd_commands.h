@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/option_table.h"
+#include "cli/commands.h"
 #include "fuzz/odd_files.h"
 #include "generate/random.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "exactff/exact.h"
-#include "report/visibility_svg.h"
+#include "report/pictures.h"
 #include "support/oracle_check.h"
 #include "support/random_scenes.h"
 

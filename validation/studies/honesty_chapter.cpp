@@ -115,34 +115,38 @@ page::Figure error_figure(const HonestyStudy& study) {
 // ------------------------------------------------------------------------------------------------------------- tables
 
 CsvFile entry_table(const HonestyStudy& study) {
-  TableWriter table(
+  table::Rows rows = rows_of(
+      "honesty",
       "view factors in random scenes, each model as for exactff matrix @MODEL --from FROM --to TO; other models are "
-      "families and seeds of studies/honest_families.h\n"
+      "families and seeds of studies/honest_families.h; "
       "truth_lower and truth_upper: what certified enclosures of both directions have in common",
-      {"model", "from", "to", "accuracy", "budget", "claim", "way", "factor", "lower", "upper", "truth_lower",
-       "truth_upper", "verdict"});
+      {table::keys("model,from,to"), table::keys("accuracy", table::Type::kNumber),
+       table::keys("budget", table::Type::kCount), table::texts("claim,way"),
+       table::numbers("factor,lower,upper", table::Strength::kStated),
+       table::numbers("truth_lower,truth_upper", table::Strength::kProved), table::texts("verdict")});
   for (const HonestyScene& scene : study.scenes) {
     for (const HonestyEntry& entry : scene.entries) {
       const ViewFactor& f = entry.factor;
-      table.row() << scene.model << (entry.turned ? scene.to : scene.from) << (entry.turned ? scene.from : scene.to)
-                  << entry.accuracy << std::uint64_t{entry.budget} << to_string(f.claim) << to_string(f.way) << f.value
-                  << f.lower << f.upper << entry.truth.lower << entry.truth.upper << word_of(verdict(f, entry.truth));
+      rows << scene.model << (entry.turned ? scene.to : scene.from) << (entry.turned ? scene.from : scene.to)
+           << entry.accuracy << entry.budget << to_string(f.claim) << to_string(f.way) << f.value << f.lower << f.upper
+           << entry.truth.lower << entry.truth.upper << word_of(verdict(f, entry.truth));
     }
   }
-  return table.finish("honesty.csv", "view factors in random scenes, with their true values");
+  return csv_file(std::move(rows), "honesty.csv", "view factors in random scenes, with their true values");
 }
 
 CsvFile row_table(const HonestyStudy& study) {
-  TableWriter table(
-      "true errors of view factors over the reported ones, by claim and accuracy (0: all)\n"
+  table::Rows rows = rows_of(
+      "honesty",
+      "true errors of view factors over the reported ones, by claim and accuracy (0: all); "
       "at_least: the largest ratio that is proved; at_most: the largest possible one of entries that hold",
-      {"claim", "way", "accuracy", "entries", "holds", "open", "broken", "wide", "at_least", "at_most"});
+      {table::keys("claim,way"), table::keys("accuracy", table::Type::kNumber),
+       table::counts("entries,holds,open,broken,wide"), table::numbers("at_least,at_most", table::Strength::kProved)});
   for (const HonestyRow& row : study.rows) {
-    table.row() << to_string(row.claim) << to_string(row.way) << row.accuracy << std::uint64_t{row.entries}
-                << std::uint64_t{row.holds} << std::uint64_t{row.open} << std::uint64_t{row.broken}
-                << std::uint64_t{row.wide} << row.worst.at_least << row.worst.at_most;
+    rows << to_string(row.claim) << to_string(row.way) << row.accuracy << row.entries << row.holds << row.open
+         << row.broken << row.wide << row.worst.at_least << row.worst.at_most;
   }
-  return table.finish("honesty-rows.csv", "true errors of view factors over the reported ones");
+  return csv_file(std::move(rows), "honesty-rows.csv", "true errors of view factors over the reported ones");
 }
 
 // "10⁻³"

@@ -17,16 +17,23 @@ double product_sum(std::span<const std::pair<double, double>> points, double fir
   return sum;
 }
 
-}  // namespace
-
-double percentile(std::vector<double> values, double percent) {
-  EXACTFF_EXPECT(!values.empty() && percent > 0.0 && percent <= 100.0);
-  // Multiplies percent * n before dividing: the rank is then exact for whole percents.
-  const double rank = std::ceil(percent * static_cast<double>(values.size()) / 100.0);
-  const auto index = static_cast<std::ptrdiff_t>(std::max(rank, 1.0)) - 1;
-  std::nth_element(values.begin(), values.begin() + index, values.end());
-  return values[static_cast<std::size_t>(index)];
+double nearest_rank_of_sorted(const std::vector<double>& values, double share) {
+  const auto n = static_cast<double>(values.size());
+  double rank = std::floor(share * n);
+  // Compares k / n with the share as written: both are rounded from the same fraction.
+  while (rank < n && rank / n < share) ++rank;
+  return values[static_cast<std::size_t>(std::clamp(rank, 1.0, n)) - 1];
 }
+
+// Squares values / largest, so that nothing underflows or overflows.
+double root_mean_square(std::span<const double> values, double largest) {
+  if (largest == 0.0 || std::isinf(largest)) return largest;
+  double sum = 0.0;
+  for (const double v : values) sum += (v / largest) * (v / largest);
+  return largest * std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+}  // namespace
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
@@ -46,32 +53,19 @@ double mean(std::span<const double> values) {
   return sum;
 }
 
-double root_mean_square(std::span<const double> values, double largest) {
-  if (largest == 0.0) return 0.0;
-  double sum = 0.0;
-  for (const double v : values) sum += (v / largest) * (v / largest);
-  return largest * std::sqrt(sum / static_cast<double>(values.size()));
-}
-
-double nearest_rank(const std::vector<double>& ascending, double share) {
-  if (ascending.empty()) return 0.0;
-  const auto n = static_cast<double>(ascending.size());
-  double rank = std::floor(share * n);
-  // Compares k / n with the share as written: both are rounded from the same fraction.
-  while (rank < n && rank / n < share) ++rank;
-  return ascending[static_cast<std::size_t>(std::clamp(rank, 1.0, n)) - 1];
+double nearest_rank(std::vector<double> values, double share) {
+  EXACTFF_EXPECT(share > 0.0 && share <= 1.0);
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  return nearest_rank_of_sorted(values, share);
 }
 
 Distribution distribution(std::vector<double> magnitudes) {
   if (magnitudes.empty()) return {};
   std::sort(magnitudes.begin(), magnitudes.end());
   const double largest = magnitudes.back();
-  return {nearest_rank(magnitudes, 0.5),
-          nearest_rank(magnitudes, 0.9),
-          nearest_rank(magnitudes, 0.99),
-          nearest_rank(magnitudes, 0.999),
-          largest,
-          std::isinf(largest) ? largest : root_mean_square(magnitudes, largest)};
+  const auto rank = [&](double share) { return nearest_rank_of_sorted(magnitudes, share); };
+  return {rank(0.5), rank(0.9), rank(0.99), rank(0.999), largest, root_mean_square(magnitudes, largest)};
 }
 
 double mean_half_width(std::span<const double> values) {

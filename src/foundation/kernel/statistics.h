@@ -8,18 +8,13 @@
 
 namespace exactff::kernel {
 
-// Nearest rank: the smallest value that at least `percent` % of the values do not exceed. Requires at least one value,
-// none of them NaN, and 0 < percent <= 100.
-[[nodiscard]] double percentile(std::vector<double> values, double percent);
-
 // The middle value, or the mean of the two middle values; 0 for an empty list.
 [[nodiscard]] double median(std::vector<double> values);
 [[nodiscard]] double mean(std::span<const double> values);
-// Squares values / largest, so that nothing underflows or overflows. `largest`: of their magnitudes; 0 gives 0.
-[[nodiscard]] double root_mean_square(std::span<const double> values, double largest);
 
-// The smallest of these values that at least the share of them does not exceed; 0 if there are none.
-[[nodiscard]] double nearest_rank(const std::vector<double>& ascending, double share);
+// The smallest of these values that at least the share of them does not exceed; 0 if there are none. Requires
+// 0 < share <= 1, and no NaN.
+[[nodiscard]] double nearest_rank(std::vector<double> values, double share);
 // Of the magnitudes of errors: the only place that says what RMS and quantiles of errors are. A quantile is by nearest
 // rank. All are 0 for an empty list; with an infinite magnitude, the largest and the RMS are infinite.
 struct Distribution {

@@ -433,9 +433,6 @@ CloudLook cloud_look(int style) {
   return kClouds[static_cast<std::size_t>(style - 1) % kClouds.size()];
 }
 
-// For a line that must be visible over a cloud of points. Plain black becomes the page's text colour.
-constexpr const char* kOverCloudStyle = "with linespoints lw 1.6 ps 1.1 lc black pt 6 dt 1";
-
 // `width`: the range of the points in x.
 std::string cloud_command(const std::string& name, const Series& cloud, const Axes& axes, double width) {
   const CloudLook look = cloud_look(cloud.style);
@@ -523,7 +520,7 @@ std::string line_plot(const Axes& axes, const std::vector<Series>& series) {
 std::string scatter_plot(const Axes& axes, const std::vector<Series>& series) {
   const auto command = [&](const std::string& name, const Series& cloud, const Points& points) {
     if (cloud.style > 0) return cloud_command(name, cloud, axes, points.back().first - points.front().first);
-    return name + " using 1:2 " + (cloud.style == kOverlay ? kOverCloudStyle : style_of(cloud)) + title_of(cloud);
+    return name + " using 1:2 " + style_of(cloud) + title_of(cloud);
   };
   std::string script = plot(axes, series, cloud_block, command);
   if (!script.empty()) script.insert(script.find(" dynamic"), " rounded");

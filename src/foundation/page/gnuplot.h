@@ -61,8 +61,7 @@ struct Axes {
 // nothing remains.
 [[nodiscard]] std::string line_plot(const Axes& axes, const std::vector<Series>& series);
 
-// Points only, for thousands of them: small and half transparent. Series of style 0 and kOverlay are drawn as lines, as
-// above.
+// Points only, for thousands of them: small and half transparent. Series of style 0 are drawn as lines.
 [[nodiscard]] std::string scatter_plot(const Axes& axes, const std::vector<Series>& series);
 
 // A bar of a histogram over the x axis.

@@ -3,14 +3,12 @@
 #pragma once
 
 #include <array>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <istream>
 #include <optional>
-#include <ostream>
 #include <span>
 #include <string>
 #include <string_view>
@@ -45,46 +43,20 @@ struct ParsedHead {
 // Of such lines; nothing if they are not those of a table.
 [[nodiscard]] std::optional<ParsedHead> parse_csv_head(std::string_view lines);
 
-// A line of a CSV file, appended to a text or a stream. Fields are added from left to right.
+// A line of a CSV file, appended to a text. Fields are added from left to right.
 class CsvLine {
  public:
   explicit CsvLine(std::string& text) : text_(text), start_(text.size()) {}
-  explicit CsvLine(std::ostream& out) : out_(&out), text_(own_) {}
   // A blank line would be none.
-  ~CsvLine() {
-    text_ += text_.size() == start_ ? "\"\"\n" : "\n";
-    if (out_ != nullptr) *out_ << own_;
-  }
+  ~CsvLine() { text_ += text_.size() == start_ ? "\"\"\n" : "\n"; }
   CsvLine(const CsvLine&) = delete;
   CsvLine& operator=(const CsvLine&) = delete;
 
   void add(const Cell& cell);
 
-  CsvLine& operator<<(const Vec3& v) { return *this << v.x << v.y << v.z; }
-  // A text, a number, or nothing.
-  template <class Value>
-  CsvLine& operator<<(const Value& value) {
-    if constexpr (std::integral<Value>) {
-      add(std::string_view(std::to_string(value)));
-    } else if constexpr (std::convertible_to<Value, std::string_view>) {
-      add(std::string_view(value));
-    } else if constexpr (std::same_as<Value, double>) {
-      add(value);
-    } else {  // std::optional
-      if (!value) {
-        add(Cell());
-      } else {
-        *this << *value;
-      }
-    }
-    return *this;
-  }
-
  private:
-  std::ostream* out_ = nullptr;
-  std::string own_;
   std::string& text_;
-  const std::size_t start_ = 0;
+  const std::size_t start_;
   bool first_ = true;
 };
 

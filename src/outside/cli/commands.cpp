@@ -1,20 +1,24 @@
 // All commands of the program, and those that explain it: `exactff help`, and `exactff completion`, which is not
 // listed, since only the installation calls it.
+#include "cli/commands.h"
+
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <sstream>
-#include <string>
 #include <string_view>
-#include <vector>
 
-#include "cli/command.h"
-#include "cli/option_table.h"
 #include "cli/output.h"
-#include "flags/file_options.h"
+#include "exactff/error.h"
+#include "exactff/methods.h"
+#include "exactff/models.h"
+#include "report/plan.h"
+#include "stress/stress.h"
 #include "text/names.h"
+#include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
@@ -262,6 +266,315 @@ std::vector<Command> add_commands(CLI::App& app) {
   return {add_info(app),   add_point(app),   add_view(app),  add_matrix(app),    add_radiosity(app),
           add_render(app), add_compare(app), add_truth(app), add_merge(app),     add_check(app),
           add_stress(app), add_convert(app), add_help(app),  add_completion(app)};
+}
+
+// --- Option table ---
+
+namespace {
+
+// Larger values mean "no limit": CLI11 uses a large number for it.
+constexpr int kManyValues = 1 << 20;
+
+// CLI11 writes a type and its checks as one text: "TEXT:{groups,faces}", "INT:INT in [1 - 4096]", "TEXT:FILE". A colon
+// alone does not end the type, since the type may be "NAME[:K]".
+struct TypeText {
+  std::string type;
+  std::string check;  // one of the checks, if there are any
+};
+
+TypeText parse_type(const std::string& text) {
+  constexpr std::array kChecks = {":{",   ":INT in [", ":UINT in [", ":FLOAT in [",  ":FILE",
+                                  ":DIR", ":PATH",     ":POSITIVE",  ":NONNEGATIVE", ":NUMBER"};
+  std::size_t end = text.size();
+  for (const char* check : kChecks) end = std::min(end, text.find(check));
+  return {text.substr(0, end), text.substr(std::min(end + 1, text.size()))};
+}
+
+// The text between `open` and `close`; empty if they are not there.
+std::string between(const std::string& text, std::string_view open, char close) {
+  const std::size_t begin = text.find(open);
+  if (begin == std::string::npos) return {};
+  const std::size_t from = begin + open.size();
+  return text.substr(from, text.find(close, from) - from);
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(separator, at), text.size());
+    parts.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return parts;
+}
+
+// The kind of value that the option takes, as far as its type says. An unspecific type ("TEXT") may be a file.
+Completion completion_of(const TypeText& type) {
+  for (const std::string& text : {type.check, type.type}) {
+    if (text.starts_with("{")) return Completion::kChoices;
+    if (text.starts_with("FILE") || text.starts_with("PATH")) return Completion::kFiles;
+    if (text.starts_with("DIR")) return Completion::kFolders;
+  }
+  return type.type == "TEXT" ? Completion::kFiles : Completion::kNothing;
+}
+
+// Converts "[1 - 4096]" to " (1 to 4096)".
+std::string range_note(const std::string& check) {
+  const std::string range = between(check, " in [", ']');
+  const std::size_t dash = range.find(" - ");
+  if (dash == std::string::npos) return {};
+  return fmt::format(" ({} to {})", range.substr(0, dash), range.substr(dash + 3));
+}
+
+std::string description_of(const CLI::Option& option, const TypeText& type) {
+  std::string text = option.get_description() + range_note(type.check);
+  if (!option.get_default_str().empty()) text += " (default: " + option.get_default_str() + ")";
+  for (const CLI::Option* other : option.get_excludes()) text += " (not with " + other->get_name() + ")";
+  for (const CLI::Option* other : option.get_needs()) text += " (only with " + other->get_name() + ")";
+  return text;
+}
+
+std::string ellipsis(const OptionRow& row) { return row.most_values == kManyValues ? "..." : ""; }
+
+// What completion offers for a placeholder of an option or the name of a positional argument: EXPERIMENT, FAMILY,
+// METHOD, or SCENE (the generated ones, with their @).
+std::vector<std::string> known_words(const std::string& kind) {
+  std::vector<std::string> words;
+  if (kind == "METHOD") {
+    for (const methods::Method* method : methods::all_methods()) words.push_back(method->name);
+  } else if (kind == "SCENE") {
+    for (const models::Model* model : models::all_models()) words.push_back('@' + std::string(model->name));
+  } else if (kind == "FAMILY") {
+    for (const stress::FamilyInfo& family : stress::families()) words.emplace_back(family.name);
+  } else if (kind == "EXPERIMENT") {
+    words = report::experiment_names();
+    words.emplace_back("all");
+  }
+  return words;
+}
+
+void offer(std::vector<std::string> words, OptionRow& row) {
+  if (words.empty()) return;
+  row.words = std::move(words);
+  row.completion = row.completion == Completion::kFiles ? Completion::kFilesAndModels : Completion::kWords;
+}
+
+// The name of a positional argument says what it is; its type adds nothing.
+OptionRow positional_row(const CLI::Option& option) {
+  OptionRow row = option_row(option);
+  row.names = {option.get_name(true, false)};
+  row.value = row.names.front() + ellipsis(row);
+  offer(known_words(row.names.front()), row);
+  return row;
+}
+
+CommandTable command_table(const CLI::App& app) {
+  CommandTable table{app.get_name(), {}, {}};
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_group().empty()) continue;
+    if (option->get_positional()) table.positionals.push_back(positional_row(*option));
+    if (option->nonpositional()) table.options.push_back(option_row(*option));
+  }
+  return table;
+}
+
+}  // namespace
+
+OptionRow option_row(const CLI::Option& option) {
+  const std::string full = option.get_type_name();
+  const TypeText type = parse_type(full.substr(0, flags::begin_of_mark(full)));
+  OptionRow row;
+  row.file = flags::mark_of(option);
+  for (const std::string& name : option.get_snames()) row.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) row.names.push_back("--" + name);
+  row.description = description_of(option, type);
+  row.required = option.get_required();
+  if (option.get_items_expected_max() == 0) return row;  // a flag
+
+  row.choices = split(between(type.check, "{", '}'), ',');
+  row.completion = completion_of(type);
+  row.least_values = std::max(1, option.get_items_expected_min());
+  row.most_values = std::min(option.get_items_expected_max(), kManyValues);
+  row.value = (row.choices.empty() ? type.type : text::joined(row.choices, "|")) + ellipsis(row);
+  offer(known_words(type.type), row);
+  row.repeats = row.most_values == kManyValues || option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll;
+  return row;
+}
+
+ProgramTable program_table(const CLI::App& app) {
+  ProgramTable table{command_table(app), {}};
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (!command->get_group().empty()) table.commands.push_back(command_table(*command));
+  }
+  std::vector<std::string> names;
+  for (const CommandTable& command : table.commands) names.push_back(command.name);
+  for (CommandTable& command : table.commands) {
+    for (OptionRow& row : command.positionals) {
+      if (row.value != "COMMAND") continue;
+      row.words = names;
+      row.completion = Completion::kWords;
+    }
+  }
+  return table;
+}
+
+// --- words for misused flags ---
+
+namespace {
+
+bool is_number(std::string_view word) { return text::parse_number(word).fault == text::NumberFault::kNone; }
+
+// "-1" and "-.5" are numbers, and "-" is standard input.
+bool is_flag(std::string_view word) { return word.size() > 1 && word.front() == '-' && !is_number(word); }
+
+// "--at" of "--at=1,0,1", "-o" of "-oFILE".
+std::string_view name_in(std::string_view word) {
+  return word.starts_with("--") ? word.substr(0, word.find('=')) : word.substr(0, 2);
+}
+
+// A word that is meant to be one or more numbers: "1", "1,0,1", "(1,0,1)", "1e-3".
+bool looks_like_numbers(std::string_view word) {
+  return !word.empty() && word.find_first_not_of("0123456789+-.,;()[]eE") == std::string_view::npos &&
+         word.find_first_of("0123456789") != std::string_view::npos;
+}
+
+// A flag with what follows it, up to the next flag.
+struct GivenFlag {
+  std::string name;
+  std::vector<std::string> words;
+
+  [[nodiscard]] std::string text() const { return words.empty() ? name : name + ' ' + text::joined(words, " "); }
+};
+
+std::vector<GivenFlag> given_flags(std::span<const std::string> words) {
+  std::vector<GivenFlag> flags;
+  for (const std::string& word : words) {
+    if (word == "--") break;  // after it there are no flags
+    if (is_flag(word)) {
+      const std::string_view name = name_in(word);
+      flags.push_back({std::string(name), {}});
+      if (name.size() < word.size()) flags.back().words.push_back(word.substr(name.size() + (name.size() > 2 ? 1 : 0)));
+    } else if (!flags.empty()) {
+      flags.back().words.push_back(word);
+    }
+  }
+  return flags;
+}
+
+// The beginning of a name counts as near, too: --out for --output.
+std::optional<std::string> nearest_flag(const CommandTable& command, const std::string& name) {
+  constexpr std::size_t kFarthest = 2;
+  std::vector<std::string_view> names;
+  for (const OptionRow& option : command.options) names.insert(names.end(), option.names.begin(), option.names.end());
+  const auto begun = std::ranges::find_if(names, [&](std::string_view known) { return known.starts_with(name); });
+  if (begun != names.end()) return std::string(*begun);
+  const std::string_view nearest = text::nearest_names(names, name, 1).front();
+  if (text::edit_distance(nearest, text::in_lower_case(name), kFarthest) > kFarthest) return std::nullopt;
+  return std::string(nearest);
+}
+
+Problem unknown(const CommandTable& command, const GivenFlag& flag) {
+  const std::optional<std::string> nearest = nearest_flag(command, flag.name);
+  return {.what = fmt::format("exactff {} has no flag {}", command.name, flag.name),
+          .why = "the command line has " + text::in_quotes(flag.text()),
+          .suggestion = nearest ? fmt::format("did you mean {}?", *nearest)
+                                : fmt::format("`exactff help {}` lists its flags", command.name)};
+}
+
+// The numbers as they should be written; the placeholders if they are not as many as they should be.
+std::string with_spaces(const OptionRow& option, const std::vector<std::string>& found) {
+  std::string text = text::joined(found, " ");
+  for (char& c : text) {
+    if (std::string_view(",;()[]").find(c) != std::string_view::npos) c = ' ';
+  }
+  const std::vector<std::string_view> numbers = text::words(text);
+  const bool complete =
+      numbers.size() == static_cast<std::size_t>(option.least_values) && std::ranges::all_of(numbers, is_number);
+  return complete ? text::joined(numbers, " ") : option.value;
+}
+
+// Of a flag that takes a vector: nothing if three numbers follow it.
+std::optional<Problem> wrong_count(const OptionRow& option, const GivenFlag& flag) {
+  constexpr std::array kNames = {"no", "one", "two", "three", "four"};
+  const auto needed = static_cast<std::size_t>(option.least_values);
+  const auto end = std::ranges::find_if_not(flag.words, looks_like_numbers);
+  const std::vector<std::string> found(flag.words.begin(), end);
+  if (found.size() == needed && std::ranges::all_of(found, is_number)) return std::nullopt;
+  return Problem{.what = fmt::format("{} takes {} numbers with spaces between them", flag.name, kNames.at(needed)),
+                 .why = found.empty() ? "it has none" : "it has " + text::in_quotes(text::joined(found, " ")),
+                 .suggestion = fmt::format("write {} {}", flag.name, with_spaces(option, found))};
+}
+
+bool takes_a_vector(const OptionRow& option) { return option.least_values == 3 && option.most_values == 3; }
+
+const OptionRow* option_named(const CommandTable& command, const std::string& name) {
+  const auto found = std::ranges::find_if(command.options, [&](const OptionRow& option) {
+    return std::ranges::find(option.names, name) != option.names.end();
+  });
+  return found == command.options.end() ? nullptr : &*found;
+}
+
+// A value that begins like a flag can be given as --flag=VALUE.
+bool is_other_flag(const CommandTable& command, const std::string& word) {
+  return is_flag(word) && (word.starts_with("--") || option_named(command, std::string(name_in(word))) != nullptr);
+}
+
+std::string kind_of_value(const OptionRow& option) {
+  if (option.value.starts_with("NAME")) return "a name";
+  if (option.value == "FILE" || option.value == "OUT") return "a file";
+  return option.value == "DIR" ? "a folder" : "a value";
+}
+
+Problem without_value(const CommandTable& command, const OptionRow& option, const std::string& name,
+                      const std::string& next) {
+  const bool may_be_meant = !next.empty() && option_named(command, std::string(name_in(next))) == nullptr;
+  return {.what = name + " needs " + kind_of_value(option),
+          .why = next.empty() ? "nothing follows it" : next + " follows, which begins like a flag",
+          .suggestion = fmt::format("write {} {}", name, option.value) +
+                        (may_be_meant ? fmt::format(", or {}={} if that is meant", name, next) : "")};
+}
+
+// Nothing for words that begin with no command of the table.
+std::optional<CommandTable> command_of(const CLI::App& app, std::span<const std::string> words) {
+  if (words.empty()) return std::nullopt;
+  ProgramTable program = program_table(app);
+  const auto command = std::ranges::find(program.commands, words.front(), &CommandTable::name);
+  return command == program.commands.end() ? std::nullopt : std::optional(std::move(*command));
+}
+
+}  // namespace
+
+void refuse_flags_without_values(const CLI::App& app, std::span<const std::string> words) {
+  const std::optional<CommandTable> command = command_of(app, words);
+  if (!command) return;
+  std::vector<Problem> problems;
+  for (std::size_t i = 1; i < words.size() && words[i] != "--"; ++i) {
+    const std::string name = is_flag(words[i]) ? std::string(name_in(words[i])) : "";
+    const OptionRow* option = name == words[i] ? option_named(*command, name) : nullptr;
+    if (option == nullptr || option->value.empty() || takes_a_vector(*option)) continue;
+    const std::string next = i + 1 < words.size() ? words[i + 1] : "";
+    if (i + 1 < words.size() && !is_other_flag(*command, next)) {
+      ++i;
+    } else {
+      problems.push_back(without_value(*command, *option, name, next));
+    }
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+void refuse_misused_flags(const CLI::App& app, std::span<const std::string> words) {
+  const std::optional<CommandTable> command = command_of(app, words);
+  if (!command) return;
+  std::vector<Problem> problems;
+  for (const GivenFlag& flag : given_flags(words.subspan(1))) {
+    const OptionRow* option = option_named(*command, flag.name);
+    if (option == nullptr) {
+      problems.push_back(unknown(*command, flag));
+    } else if (takes_a_vector(*option)) {
+      if (auto problem = wrong_count(*option, flag)) problems.push_back(std::move(*problem));
+    }
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
 }
 
 }  // namespace exactff::cli

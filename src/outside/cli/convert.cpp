@@ -3,16 +3,15 @@
 #include <iostream>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <vector>
 
-#include "cli/command.h"
+#include "cli/commands.h"
 #include "cli/output.h"
 #include "exactff/scene_files.h"
 #include "exactff/table.h"
 #include "files/file.h"
-#include "flags/file_options.h"
 #include "flags/scene.h"
+#include "flags/values.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -35,7 +34,7 @@ constexpr const char* kConvertFooter =
     "--triangulate cuts all faces into triangles. A face that is not exactly planar becomes the triangles that "
     "exactff\n"
     "takes it for.\n"
-    "A table (a truth file, a matrix, radiosities) is written as .csv, .npz (a NumPy archive with an array for each\n"
+    "A table that exactff wrote becomes .csv, .npz (a NumPy archive with an array for each\n"
     "column, and the head) or .jsonl (JSON lines, the first of which is the head).\n"
     "\n"
     "Example:\n"

@@ -20,13 +20,12 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/command.h"
-#include "cli/option_table.h"
+#include "cli/commands.h"
 #include "cli/output.h"
 #include "cli/process.h"
 #include "exactff/error.h"
 #include "exactff/version.h"
-#include "flags/file_options.h"
+#include "flags/values.h"
 #include "text/escape.h"
 
 namespace {

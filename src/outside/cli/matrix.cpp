@@ -2,23 +2,16 @@
 #include "exactff/matrix.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <memory>
-#include <optional>
-#include <string>
 #include <system_error>
 #include <utility>
-#include <vector>
 
-#include "cli/command.h"
-#include "cli/further_files.h"
-#include "cli/kept_work.h"
+#include "cli/commands.h"
 #include "cli/output.h"
 #include "cli/process.h"
 #include "cli/view_factor_words.h"
 #include "exactff/version.h"
-#include "flags/file_options.h"
 #include "flags/scene.h"
 #include "flags/values.h"
 #include "matrix/row_facts.h"

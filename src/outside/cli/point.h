@@ -1,12 +1,12 @@
 // The parts of `exactff point`: flags and warnings (point.cpp), values, output, the table of several sources.
 #pragma once
 
-#include <array>
+#include <CLI/CLI.hpp>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "cli/one_receiver.h"
 #include "exactff/adaptive.h"
 #include "exactff/exact.h"
 #include "exactff/receiver.h"
@@ -15,6 +15,34 @@
 #include "flags/values.h"
 
 namespace exactff::cli {
+
+// --- One receiver ---
+
+// The flags of one receiver, and warnings on where it lies. Shared by `exactff point` and `exactff view`.
+
+struct OneReceiver {
+  flags::ThreeNumbers at, normal;
+  std::string on;
+
+  void add_to(CLI::App& app);
+  [[nodiscard]] Receiver make(const Scene& scene) const;
+};
+
+// No front, and the back of some face.
+[[nodiscard]] bool sees_only_backs(const WholeView& seen);
+
+// A typing error in --at or --on would otherwise go unnoticed.
+void warn_if_off_its_face(const Scene& scene, const Receiver& receiver);
+// For a receiver that sees backs: which surfaces are probably turned the wrong way. Nothing of large scenes, where this
+// would take longer than the values.
+void warn_of_turned_surfaces(const Scene& scene);
+// Says on stderr that x lies near a face that is not its own, and what would follow if it were: effect(receiver there),
+// which is empty if nothing would. Or that the receiver looks away from the front of its own face. Or, if it sees
+// nothing but backs, and would see something on the face before it, how to place it there.
+void warn_of_near_face(const Scene& scene, const Receiver& receiver, const std::function<bool()>& sees_no_front,
+                       const std::function<std::string(const Receiver&)>& effect);
+
+// --- Point ---
 
 inline constexpr std::uint64_t kMostPointLeaves = 10'000'000;  // takes some seconds
 inline constexpr std::uint64_t kMostDrawnLeaves = 50'000;

@@ -7,7 +7,7 @@
 #include "cli/output.h"
 #include "cli/point.h"
 #include "exactff/version.h"
-#include "report/visibility_svg.h"
+#include "report/pictures.h"
 #include "text/json_document.h"
 #include "text/number_text.h"
 #include "text/phrases.h"

@@ -3,26 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
-#include "cli/command.h"
-#include "cli/further_files.h"
-#include "cli/kept_work.h"
+#include "cli/commands.h"
 #include "cli/output.h"
 #include "cli/process.h"
 #include "cli/view_factor_words.h"
 #include "exactff/jobs.h"
 #include "exactff/version.h"
 #include "files/file.h"
-#include "flags/file_options.h"
 #include "flags/scene.h"
 #include "flags/values.h"
 #include "radiosity/narrowing.h"

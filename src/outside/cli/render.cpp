@@ -4,27 +4,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <filesystem>
 #include <iostream>
 #include <memory>
-#include <optional>
-#include <string>
 #include <system_error>
-#include <vector>
 
-#include "cli/command.h"
-#include "cli/kept_work.h"
+#include "cli/commands.h"
 #include "cli/output.h"
 #include "cli/process.h"
 #include "exactff/slips.h"
 #include "files/file.h"
 #include "files/numpy.h"
-#include "flags/file_options.h"
-#include "flags/receivers.h"
 #include "flags/scene.h"
 #include "flags/values.h"
-#include "render/identity.h"
+#include "render/job.h"
 #include "text/escape.h"
 #include "text/names.h"
 #include "text/phrases.h"

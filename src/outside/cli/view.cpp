@@ -7,23 +7,19 @@
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <optional>
 
-#include "cli/command.h"
-#include "cli/one_receiver.h"
+#include "cli/commands.h"
 #include "cli/output.h"
 #include "cli/point.h"
 #include "cli/process.h"
 #include "exactff/render.h"
 #include "exactff/scene_files.h"
 #include "exactff/version.h"
-#include "flags/file_options.h"
 #include "flags/scene.h"
 #include "flags/values.h"
-#include "table/csv.h"
+#include "table/rows.h"
 #include "text/json_document.h"
 #include "text/names.h"
-#include "text/number_text.h"
 #include "text/phrases.h"
 #include "vtk/vtk.h"
 #include "whole_view/referee.h"
@@ -123,17 +119,32 @@ void print_table(const ViewArguments& args, const Scene& scene, const Receiver& 
   }
 }
 
+// With --digits, numbers are the decimals that were asked for.
 void print_csv(const ViewArguments& args, const Scene& scene, const Receiver& receiver, const WholeView& seen) {
-  std::cout << "# exactff " << kVersion << " view: shares of what is seen, correctly rounded, between proved bounds\n"
-            << "# scene hash " << scene.hash() << "; receiver " << text::printable(receiver_text(scene, receiver))
-            << '\n'
-            << "name,share,lower,upper,status,form_factor,stacked\n";
+  table::Head head;
+  head.set("about", std::string("shares of what is seen, correctly rounded, between proved bounds"));
+  head.set("scene", args.scene.path);
+  head.set("scene_hash", scene.hash());
+  head.set("receiver", receiver_text(scene, receiver));
+  const auto values = [&](std::string_view name) {
+    return args.digits > 0 ? table::texts(name) : table::numbers(name, table::Strength::kCertified);
+  };
+  table::Rows rows("view", std::move(head),
+                   {table::keys("name"), values("share"), table::numbers("lower,upper", table::Strength::kProved),
+                    table::texts("status", table::Strength::kProved), values("form_factor"), table::texts("stacked")});
+  const auto put = [&](const ViewShare& share) { args.digits > 0 ? rows << number(args, share) : rows << share.value; };
   for_each_share(scene, seen, [&](const std::string& name, const ViewShare& share, const SeenPatch* patch) {
-    table::CsvLine row(std::cout);
-    row << text::printable(name) << number(args, share) << share.lower << share.upper << to_string(share.status)
-        << (patch ? number(args, patch->form_factor) : std::string())
-        << (patch ? std::string(is_stacked(*patch) ? "yes" : "no") : std::string());
+    rows << text::printable(name);
+    put(share);
+    rows << share.lower << share.upper << to_string(share.status);
+    if (patch == nullptr) {
+      rows << std::optional<double>() << "";
+    } else {
+      put(patch->form_factor);
+      rows << (is_stacked(*patch) ? "yes" : "no");
+    }
   });
+  std::cout << table::csv_text(rows.take());
 }
 
 nlohmann::ordered_json share_json(const ViewArguments& args, const ViewShare& share) {

@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <initializer_list>
 #include <iterator>
 #include <optional>
 #include <utility>
 
 #include "flags/values.h"
 #include "kernel/float_environment.h"
-#include "text/escape.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -96,16 +94,6 @@ constexpr std::array<TextFlag, 6> kLists = {
       "Where rays end: jittered, centre, regular, low-discrepancy (default: all)"},
      {"--variant", &Arguments::variant, "LIST",
       "literal: the algorithm as printed in 1992; mended: with its faults corrected (default: both)"}}};
-constexpr std::array<TextFlag, 4> kLimits = {
-    {{"--method-seeds", &Arguments::method_seeds, "N", "Run stochastic methods with seeds 1 to N (default: 30)"},
-     {"--method-receivers", &Arguments::method_receivers, "N",
-      "Number of receivers at which methods are compared (default: 48)"},
-     {"--method-budget", &Arguments::method_budget, "SECONDS",
-      "Time limit for each method on a scene. The time is estimated from counted work at fixed prices, so that the "
-      "settings that run do not depend on the machine (default: 2)"},
-     {"--sweep-budget", &Arguments::sweep_budget, "SECONDS",
-      "The same limit for all settings of the adaptive algorithm together (default: 25)"}}};
-
 void refuse_idle(const std::vector<std::string>& flags, const std::string& beside, const std::string& why,
                  const std::string& suggestion) {
   if (flags.empty()) return;
@@ -120,7 +108,7 @@ void check_effects(const ComparisonArguments& args) {
   for (const TextFlag& flag : kLists) {
     if (!(args.*flag.text).empty()) given.emplace_back(flag.name);
   }
-  if (!args.sweep_budget.empty()) given.emplace_back("--sweep-budget");
+  if (args.sweep_budget) given.emplace_back("--sweep-budget");
   refuse_idle(given, "beside --method",
               "with --method, the sweep of Tampieri's algorithm over these values does not run",
               "add --sweep, or write a setting of the method, such as --method adaptive:eps_B=0.1|0.01,rays=16");
@@ -138,14 +126,6 @@ study::Sweeps sweeps_of(const ComparisonArguments& args) {
   return sweeps;
 }
 
-template <class Number>
-Number within(Number value, Number lowest, Number highest, const std::string& flag, const std::string& meaning) {
-  if (value >= lowest && value <= highest) return value;
-  text::refuse(flag + " is not between " + text::shortest(static_cast<double>(lowest)) + " and " +
-                   text::shortest(static_cast<double>(highest)),
-               meaning, "give a number in this range");
-}
-
 // Of the named methods, and of the exact method, with which they are compared. Empty if none is named.
 std::vector<study::Ladder> ladders_of(const ComparisonArguments& args) {
   std::vector<study::Ladder> ladders;
@@ -154,7 +134,7 @@ std::vector<study::Ladder> ladders_of(const ComparisonArguments& args) {
   const auto is_stochastic = [](const study::Ladder& ladder) {
     return std::ranges::any_of(ladder.rungs, [](const methods::Choice& c) { return c.method->stochastic(c.settings); });
   };
-  if (!args.method_seeds.empty() && std::ranges::none_of(ladders, is_stochastic)) {
+  if (args.method_seeds && std::ranges::none_of(ladders, is_stochastic)) {
     refuse_idle({"--method-seeds"}, "here", "none of the named methods uses random numbers",
                 "name a method that does, such as --method area-sampling");
   }
@@ -167,19 +147,9 @@ study::MethodSweep methods_of(const ComparisonArguments& args) {
   study::MethodSweep sweep;
   sweep.enabled = !args.no_methods;
   sweep.ladders = ladders_of(args);
-  if (!args.method_seeds.empty()) {
-    sweep.seeds = within<std::size_t>(to_whole<std::size_t>(args.method_seeds, "--method-seeds"), 1, 10000,
-                                      "--method-seeds", "it is the number of seeds for every stochastic method");
-  }
-  if (!args.method_receivers.empty()) {
-    sweep.receivers =
-        within<std::size_t>(to_whole<std::size_t>(args.method_receivers, "--method-receivers"), 1, 100000,
-                            "--method-receivers", "it is the number of receivers at which methods are compared");
-  }
-  if (!args.method_budget.empty()) {
-    sweep.budget = within(to_tolerance(args.method_budget, "--method-budget"), 0.0, 1e9, "--method-budget",
-                          "it is the limit, in seconds of counted work, for a method on a scene");
-  }
+  sweep.seeds = args.method_seeds.value_or(sweep.seeds);
+  sweep.receivers = args.method_receivers.value_or(sweep.receivers);
+  sweep.budget = args.method_budget.value_or(sweep.budget);
   return sweep;
 }
 
@@ -231,7 +201,7 @@ Comparison comparison_of(ComparisonArguments args, bool abridged, int threads) {
   study::Request& request = comparison.request;
   request.sweeps = sweeps_of(args);
   request.methods = methods_of(args);
-  if (!args.sweep_budget.empty()) request.sweep_budget = to_tolerance(args.sweep_budget, "--sweep-budget");
+  request.sweep_budget = args.sweep_budget.value_or(request.sweep_budget);
   comparison.scene = std::make_shared<const Scene>(args.scene.load());
   request.scene = comparison.scene.get();
   request.scene_name = short_name(args.scene.path);
@@ -268,7 +238,22 @@ void ComparisonArguments::add_to(CLI::App& app) {
   app.add_flag("--sweep", sweep,
                "Also run the ray-sampled adaptive algorithm over --eps-b, --eps-a, --rays, --seeds, --pattern and "
                "--variant, as is done if no --method is given");
-  std::ranges::for_each(kLimits, add);
+  app.add_option("--method-seeds", method_seeds, "Run stochastic methods with seeds 1 to N (default: 30)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 10000));
+  app.add_option("--method-receivers", method_receivers,
+                 "Number of receivers at which methods are compared (default: 48)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100000));
+  app.add_option("--method-budget", method_budget,
+                 "Time limit for each method on a scene. The time is estimated from counted work at fixed prices, so "
+                 "that the settings that run do not depend on the machine (default: 2)")
+      ->type_name("SECONDS")
+      ->check(is_not_negative);
+  app.add_option("--sweep-budget", sweep_budget,
+                 "The same limit for all settings of the adaptive algorithm together (default: 25)")
+      ->type_name("SECONDS")
+      ->check(is_not_negative);
   engine.add_to(app);
   camera.add_to(app, "Pictures in the report: where the camera stands (default: where it shows the whole scene)",
                 "The point that it looks at");

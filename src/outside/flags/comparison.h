@@ -5,12 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "exactff/error.h"
 #include "exactff/study.h"
-#include "flags/receivers.h"
 #include "flags/scene.h"
 #include "report/plan.h"
 
@@ -25,7 +25,8 @@ struct ComparisonArguments {
   std::vector<std::string> methods;
   bool no_methods = false;
   bool sweep = false;
-  std::string method_seeds, method_receivers, method_budget, sweep_budget;
+  std::optional<std::size_t> method_seeds, method_receivers;
+  std::optional<double> method_budget, sweep_budget;
   flags::EngineArgument engine;
   flags::CameraArguments camera;  // of the report's pictures
   std::string title;
@@ -54,8 +55,8 @@ struct Comparison {
 //   title Form factors of rooms
 //   scene cornell_box.obj --on floor --grid 32x32 --title "Cornell box"
 //   scene @karkanis:n=200 --on ... --unless-abridged
-//   experiment karkanis-times nettle-rule
-//   experiment closure --unless-abridged
+//   experiment karkanis-times
+//   experiment meshing --unless-abridged
 //
 // A scene line has the words and flags that `exactff compare` takes for one scene. Files are
 // looked up in the folder of the study.

@@ -2,17 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <iostream>
+#include <iterator>
+#include <set>
+#include <string_view>
+#include <unordered_set>
 #include <utility>
 
 #include "exactff/matrix.h"
 #include "exactff/models.h"
 #include "exactff/scene_files.h"
-#include "flags/file_options.h"
 #include "kernel/vec.h"
-#include "text/escape.h"
+#include "scene/selections.h"
+#include "text/names.h"
+#include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
+#include "text/text_lines.h"
 
 namespace exactff::flags {
 namespace {
@@ -174,6 +182,316 @@ render::Camera CameraArguments::camera(const Scene& scene) const {
   }
   if (fov) camera.fov = *fov;
   return camera;
+}
+
+// --- Receivers ---
+
+namespace {
+
+// The given flags that say where on a patch the receivers are.
+std::vector<std::string> placements(const ReceiverArguments& args) {
+  std::vector<std::string> flags;
+  if (!args.grid.empty()) flags.emplace_back("--grid");
+  if (args.vertices) flags.emplace_back("--vertices");
+  if (args.centres) flags.emplace_back("--centres");
+  if (!args.samples.empty()) flags.emplace_back("--samples");
+  return flags;
+}
+
+bool is_auto(const std::string& on) { return on == "auto" || on.starts_with("auto:"); }
+
+void check_file_alone(const ReceiverArguments& args) {
+  std::vector<std::string> others = placements(args);
+  if (args.per_face) others.emplace_back("--per-face");
+  if (!args.on.empty() && !(args.on.size() == 1 && is_auto(args.on.front()))) others.insert(others.begin(), "--on");
+  if (args.file.empty() || others.empty()) return;
+  text::refuse("--receivers is given together with " + text::enumerate(others),
+               "receivers come either from the file or from a patch", "remove one of them");
+}
+
+int to_cells(std::string_view text, const std::string& grid) {
+  if (const auto count = whole_number<int>(text)) return *count;
+  text::refuse("--grid: " + text::in_quotes(grid) + " is not a grid", "a grid is two whole numbers",
+               "write columns x rows: --grid 32x32");
+}
+
+GridSize grid_of(const std::string& text) {
+  const std::string_view view = text;
+  const std::size_t cross = std::min(view.find('x'), view.size());
+  return {to_cells(view.substr(0, cross), text), to_cells(view.substr(std::min(cross + 1, view.size())), text)};
+}
+
+std::uint64_t to_count(const std::string& text, const std::string& flag, const std::string& why,
+                       const std::string& example) {
+  if (const auto count = whole_number<std::uint64_t>(text)) return *count;
+  text::refuse(flag + ": " + text::in_quotes(text) + " is not a whole number in range", why,
+               "write, for example, " + flag + example);
+}
+
+std::uint64_t sample_count(const ReceiverArguments& args) {
+  return to_count(args.samples, "--samples", "it is the number of receivers", " 1000");
+}
+
+std::uint64_t sample_seed(const ReceiverArguments& args) {
+  if (args.sample_seed.empty()) return 1;
+  return to_count(args.sample_seed, "--sample-seed", "a seed is a whole number from 0 to 2^64 - 1", " 7");
+}
+
+// The named faces, and the regions that they make: of a patch those of its faces, of a face that face alone.
+struct Surface {
+  std::vector<FaceId> faces;
+  std::vector<Region> regions;
+};
+
+Surface surface_named(const Scene& scene, const std::vector<std::string>& names) {
+  Surface surface;
+  std::unordered_set<std::size_t> known;
+  for (const Selection& selection : selections_named(scene, names)) {
+    std::ranges::move(regions(scene, selection), std::back_inserter(surface.regions));
+    for (const FaceId face : scene.faces_of(selection)) {
+      if (!known.insert(index_of(face)).second) {
+        text::refuse("--on: '" + scene.name_of(face) + "' is named twice", "every receiver on it would occur twice",
+                     "give it once");
+      }
+      surface.faces.push_back(face);
+    }
+  }
+  if (surface.faces.empty()) {
+    text::refuse("--on: no face has area in " + text::in_quotes(text::joined(names, ","), text::kShownName),
+                 "receivers lie on faces", "choose another patch");
+  }
+  return surface;
+}
+
+ChosenReceivers on_faces(const ReceiverArguments& args, const Scene& scene, GridIds grid_ids) {
+  const std::string on = text::joined(args.on, ",");
+  const auto [faces, regions] = surface_named(scene, args.on);
+  const std::string per_face = args.per_face ? ", per face" : "";
+  if (!args.grid.empty()) {
+    const GridSize size = grid_of(args.grid);
+    return {
+        args.per_face ? grid_receivers(scene, faces, size, grid_ids) : grid_receivers(scene, regions, size, grid_ids),
+        on + ", grid " + args.grid + per_face};
+  }
+  if (args.vertices) return {vertex_receivers(scene, faces), on + ", vertices"};
+  if (args.centres) {
+    return {args.per_face ? centre_receivers(scene, faces) : centre_receivers(scene, regions),
+            on + ", centres" + per_face};
+  }
+  const std::uint64_t count = sample_count(args), seed = sample_seed(args);
+  return {sample_receivers(scene, faces, count, seed),
+          fmt::format("{}, {}, seed {}", on, text::counted(count, "sample"), seed)};
+}
+
+// What --on says of receivers that come from a file.
+std::optional<AutoFace> face_of_file(const ReceiverArguments& args, const Scene& scene) {
+  if (args.on.empty()) return std::nullopt;
+  if (const auto face = auto_face(args.on.front(), scene)) return face;
+  text::refuse("--receivers is given together with --on " + args.on.front() + ", which is a patch of the scene",
+               "receivers come either from the file or from a patch",
+               "remove one of them; to find the faces automatically, rename the patch");
+}
+
+ChosenReceivers in_image(const ReceiverArguments& args, const Scene& scene) {
+  exr::GBuffer gbuffer = exr::read_gbuffer(exr::ExrFile(args.file), args.layers);
+  ChosenReceivers chosen;
+  chosen.description = std::filesystem::path(args.file).filename().string() + ", " + gbuffer.layers;
+  if (const auto face = face_of_file(args, scene)) {
+    exr::place_on_faces(scene, gbuffer, face->tolerance);
+    chosen.description += ", on " + args.on.front();
+    chosen.warnings = exr::warnings_of(gbuffer);
+  }
+  const exr::Frame& frame = gbuffer.frame;
+  const auto add = [&](exr::Mark mark, const std::string& what) {
+    if (const std::size_t count = frame.count(mark); count > 0)
+      chosen.description += fmt::format(", {} {}", count, what);
+  };
+  add(exr::Mark::kNothing, "without a hit");
+  add(exr::Mark::kNoFace, "without a face");
+  add(exr::Mark::kShadingNormal, "with a shading normal");
+  chosen.receivers = std::move(gbuffer.receivers);
+  chosen.frame = std::move(gbuffer.frame);
+  return chosen;
+}
+
+ChosenReceivers in_file(const ReceiverArguments& args, const Scene& scene) {
+  if (are_pixels(args)) return in_image(args, scene);
+  ChosenReceivers chosen;
+  if (args.file == "-") {
+    chosen = {read_receivers(std::cin, kStandardInput, scene), kStandardInput, {}};
+  } else {
+    chosen = {read_receivers(args.file, scene), std::filesystem::path(args.file).filename().string(), {}};
+  }
+  const auto face = face_of_file(args, scene);
+  if (!face) return chosen;
+  chosen.description += ", on " + args.on.front();
+  chosen.without_face = place_on_faces(scene, chosen.receivers, face->tolerance).size();
+  if (chosen.without_face > 0) chosen.description += fmt::format(", {} without a face", chosen.without_face);
+  return chosen;
+}
+
+void check_not_empty(const ReceiverArguments& args, const ChosenReceivers& chosen) {
+  if (!chosen.receivers.empty()) return;
+  const std::string what = "there are no receivers in " + chosen.description;
+  if (!args.file.empty()) text::refuse(what, "every row of the file is a receiver", "add rows below the header");
+  text::refuse(what, "no cell of the grid has its centre inside a face", "use a finer grid or another patch");
+}
+
+}  // namespace
+
+bool are_pixels(const ReceiverArguments& args) {
+  return !args.file.empty() && args.file != "-" &&
+         (exr::is_exr(args.file) ||
+          text::in_lower_case(std::filesystem::path(args.file).extension().string()) == ".exr");
+}
+
+std::optional<AutoFace> auto_face(const std::string& on, const Scene& scene) {
+  if (!is_auto(on) || std::ranges::find(scene.patches(), on, &Patch::name) != scene.patches().end())
+    return std::nullopt;
+  if (on == "auto") return AutoFace{};
+  const text::ParsedNumber distance = text::parse_number(on.substr(std::string_view("auto:").size()));
+  if (distance.fault == text::NumberFault::kNone && distance.value > 0.0) return AutoFace{distance.value};
+  text::refuse("--on " + text::in_quotes(on) + ": the distance is no positive number",
+               "faces further away from a receiver are not considered", "write, for example, --on auto:1e-4");
+}
+
+void add_receiver_options(CLI::App& app, ReceiverArguments& args) {
+  add_names(app, "--on", args.on, "Patch or face on which the receivers lie",
+            "; all: every patch; with --receivers: auto or auto:DISTANCE finds the face of each receiver");
+  app.add_option("--grid", args.grid,
+                 "A receiver in the centre of each cell of a grid on each surface: columns x rows, such as 32x32")
+      ->type_name("UxV");
+  app.add_flag("--vertices", args.vertices, "A receiver at each vertex of each face, with that face's normal");
+  app.add_flag("--centres", args.centres, "A receiver at the centre of each surface");
+  app.add_flag("--per-face", args.per_face,
+               "With --grid or --centres: treat each face by itself, instead of joining neighbours in one plane");
+  app.add_option("--samples", args.samples, "N receivers at random, uniformly by area")->type_name("N");
+  app.add_option("--sample-seed", args.sample_seed, "Seed of --samples; it does not affect rays (default: 1)")
+      ->type_name("S");
+  add_read(app, "--receivers", args.file,
+           "CSV file with the columns id,x,y,z,nx,ny,nz,on, or a truth file, instead of --on; - for standard input; or "
+           "an EXR file with the visible point and normal of each pixel");
+  app.add_option("--position-layer", args.layers.position,
+                 "Layer of the points in an EXR file, in world coordinates (default: position or P)")
+      ->type_name("LAYER");
+  app.add_option("--normal-layer", args.layers.normal, "Layer of the normals in an EXR file (default: normal or N)")
+      ->type_name("LAYER");
+}
+
+void check_receiver_options(const ReceiverArguments& args) {
+  const std::vector<std::string> placed = placements(args);
+  check_file_alone(args);
+  if (!(args.layers.position.empty() && args.layers.normal.empty()) && !are_pixels(args)) {
+    text::refuse(std::string(args.layers.position.empty() ? "--normal-layer" : "--position-layer") +
+                     " is given without an image",
+                 "it names a layer of an EXR file", "add --receivers FILE.exr, or remove it");
+  }
+  if (!args.sample_seed.empty() && args.samples.empty()) {
+    text::refuse("--sample-seed is given without --samples", "only --samples draws receivers at random",
+                 "add --samples 1000, or remove it");
+  }
+  if (!args.file.empty()) return;
+  if (args.per_face && args.grid.empty() && !args.centres) {
+    text::refuse("--per-face is given without --grid or --centres", "vertices and samples are always made per face",
+                 "remove it");
+  }
+  if (args.on.empty() && placed.empty()) {
+    text::refuse("there are no receivers", "values are computed at receivers",
+                 "give --on NAME with --grid 32x32, --vertices, --centres or --samples 1000; or --receivers FILE.csv");
+  }
+  if (args.on.empty()) {
+    text::refuse(placed.front() + " is given without --on", "it places receivers on a patch",
+                 "name the patch with --on NAME");
+  }
+  if (placed.empty()) {
+    text::refuse("--on is given without --grid, --vertices, --centres or --samples",
+                 "they say where the receivers lie on the patch", "add one of them, for example --grid 32x32");
+  }
+  if (placed.size() > 1) {
+    text::refuse(text::enumerate(placed) + " are given together", "each places the receivers in a different way",
+                 "keep only one of them");
+  }
+  if (!args.grid.empty()) (void)grid_of(args.grid);
+  if (!args.samples.empty()) (void)sample_count(args);
+  (void)sample_seed(args);
+}
+
+void check_standard_input(const SceneArguments& scene, const ReceiverArguments& receivers) {
+  if (!scene.from_standard_input() || receivers.file != "-") return;
+  text::refuse("the scene and the receivers are both to be read from standard input",
+               "where one ends and the other begins is unknown", "name a file for one of them");
+}
+
+ChosenReceivers receivers_of(const ReceiverArguments& args, const Scene& scene, GridIds grid_ids) {
+  check_receiver_options(args);
+  ChosenReceivers chosen = args.file.empty() ? on_faces(args, scene, grid_ids) : in_file(args, scene);
+  check_not_empty(args, chosen);
+  return chosen;
+}
+
+std::vector<Problem> warnings_of_receivers(const ChosenReceivers& chosen) {
+  if (chosen.without_face == 0) return chosen.warnings;
+  return {{.what = "--on auto found no face for " + std::to_string(chosen.without_face) + " of " +
+                   text::counted(chosen.receivers.size(), "receiver"),
+           .why = "they now lie on none",
+           .suggestion = "--on auto:DISTANCE looks further away"}};
+}
+
+// --- sources ---
+
+namespace {
+
+void refuse_sky(const Scene& scene, std::vector<std::string> names) {
+  if (!take_sky(scene, names)) return;
+  text::refuse("--source: the sky is not a source of this command", "its sources are patches",
+               "exactff view prints the sky's form factor as (open); truth and render take sky as a source");
+}
+
+void add_option(CLI::App& app, SourceArguments& args, const std::string& sky) {
+  add_names(app, "--source", args.names, "Source patch or face",
+            "; all: every patch" + sky + " (default: every emitting patch)");
+}
+
+}  // namespace
+
+void add_source_options(CLI::App& app, SourceArguments& args) { add_option(app, args, ""); }
+
+void add_source_options_under_sky(CLI::App& app, SourceArguments& args) {
+  add_option(app, args, "; sky: what is open, all directions that meet nothing, with a radiosity of 1");
+}
+
+std::vector<Selection> sources_of(const SourceArguments& args, const Scene& scene) {
+  refuse_sky(scene, args.names);
+  std::vector<Selection> sources = selections_named(scene, args.names);
+  std::set<std::pair<PatchId, std::optional<FaceId>>> named;
+  for (const Selection& source : sources) {
+    if (named.emplace(source.patch, source.face).second) continue;
+    throw InputError({.what = "--source: '" + scene.name_of(source) + "' is named twice",
+                      .why = "its light would count twice",
+                      .suggestion = "give it once"});
+  }
+  return sources;
+}
+
+SourcesUnderSky sources_under_sky(const SourceArguments& args, const Scene& scene) {
+  SourceArguments patches = args;
+  const bool sky = take_sky(scene, patches.names);
+  return {sources_of(patches, scene), sky};
+}
+
+std::string note_on_sources_without_emission(const Scene& scene, const std::vector<Selection>& sources) {
+  constexpr std::size_t kNamed = 5;
+  std::vector<std::string> names;
+  std::size_t count = 0;
+  for (const Selection& source : sources) {
+    if (emits(scene, source)) continue;
+    if (++count <= kNamed) names.push_back(text::in_quotes(scene.name_of(source)));
+  }
+  if (count == 0) return {};
+  if (count > kNamed) names.push_back(std::to_string(count - kNamed) + " more");
+  return count == 1
+             ? names.front() + " emits nothing (Ke 0): as a named source it counts with a radiosity of 1"
+             : text::enumerate(names) + " emit nothing (Ke 0): as named sources they count with a radiosity of 1 each";
 }
 
 }  // namespace exactff::flags

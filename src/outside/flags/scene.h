@@ -6,8 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "exactff/error.h"
 #include "exactff/exact.h"
+#include "exactff/exr.h"
 #include "exactff/radiosity.h"
+#include "exactff/receiver.h"
 #include "exactff/render.h"
 #include "exactff/scene.h"
 #include "flags/values.h"
@@ -83,5 +86,81 @@ struct EngineArgument {
     return name == "both" ? Engine::kBoth : name == "boolean" ? Engine::kBoolean : Engine::kEdges;
   }
 };
+
+// --- Receivers ---
+
+// The flags of all commands over many receivers. Receivers: --receivers FILE, or --on NAME with one of --grid,
+// --vertices,
+// --centres, --samples. With --receivers, --on auto finds the faces. FILE may be an image that holds visible points.
+// Sources: --source.
+
+// The flags as given; empty if a flag was not given.
+struct ReceiverArguments {
+  std::vector<std::string> on;
+  std::string grid;
+  bool vertices = false;
+  bool centres = false;
+  bool per_face = false;
+  std::string samples;
+  std::string sample_seed;
+  std::string file;
+  exr::GBufferLayers layers;  // of a file that is an image
+};
+
+struct ChosenReceivers {
+  std::vector<Receiver> receivers;
+  std::string description;               // "floor, grid 32x32", "floor, 1000 samples, seed 1", "points.csv"
+  std::size_t without_face = 0;          // that --on auto found no face for
+  std::optional<exr::Frame> frame = {};  // if the receivers are pixels of an image
+  std::vector<Problem> warnings = {};    // about the image
+};
+
+// Whether --receivers names an image, as its bytes or its name say.
+[[nodiscard]] bool are_pixels(const ReceiverArguments& args);
+
+// The distance of "auto" or "auto:DISTANCE". No distance: the default tolerance.
+struct AutoFace {
+  std::optional<double> tolerance;
+};
+// What --on says, unless it is the name of a patch. Throws InputError for a distance that is none.
+std::optional<AutoFace> auto_face(const std::string& on, const Scene& scene);
+
+// "--on auto found no face for 3 of 10 receivers; ...", and the warnings about an image.
+std::vector<Problem> warnings_of_receivers(const ChosenReceivers& chosen);
+
+void add_receiver_options(CLI::App& app, ReceiverArguments& args);
+
+// Throws InputError if flags are missing or contradict each other. Needs no scene.
+void check_receiver_options(const ReceiverArguments& args);
+
+// Throws InputError if both are to be read from standard input.
+void check_standard_input(const SceneArguments& scene, const ReceiverArguments& receivers);
+
+// Checks the flags, too. Throws InputError, also if the named receivers are none.
+ChosenReceivers receivers_of(const ReceiverArguments& args, const Scene& scene, GridIds grid_ids = GridIds::kUnique);
+
+// --- sources ---
+
+struct SourceArguments {
+  std::vector<std::string> names;  // each a name, a comma list of names, or "all"
+};
+
+void add_source_options(CLI::App& app, SourceArguments& args);
+void add_source_options_under_sky(CLI::App& app, SourceArguments& args);  // for sources_under_sky()
+
+// In the given order. Empty if the flag was not given, which stands for every patch that emits. Throws InputError if a
+// name is unknown or occurs twice, or is "sky".
+std::vector<Selection> sources_of(const SourceArguments& args, const Scene& scene);
+
+// The same for commands that know "sky", all directions that meet nothing, as a source. A patch of this name has
+// priority.
+struct SourcesUnderSky {
+  std::vector<Selection> sources;  // empty, without sky: every patch that emits
+  bool sky = false;
+};
+SourcesUnderSky sources_under_sky(const SourceArguments& args, const Scene& scene);
+
+// A sentence that names those of the sources that emit nothing, and says how they count; empty if all emit.
+std::string note_on_sources_without_emission(const Scene& scene, const std::vector<Selection>& sources);
 
 }  // namespace exactff::flags

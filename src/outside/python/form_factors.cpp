@@ -6,9 +6,9 @@
 #include "exactff/batch.h"
 #include "exactff/methods.h"
 #include "exactff/receiver.h"
-#include "flags/receivers.h"
+#include "flags/scene.h"
 #include "python/bindings.h"
-#include "report/visibility_svg.h"
+#include "report/pictures.h"
 #include "truth/unit_normal.h"
 
 namespace exactff::python {

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "check/report.h"
-#include "exr/other_image.h"
+#include "exr/exr_file.h"
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"
 #include "text/names.h"

@@ -12,7 +12,6 @@
 #include "matrix/columns.h"
 #include "table/csv.h"
 #include "text/names.h"
-#include "text/phrases.h"
 
 namespace exactff::check {
 namespace {
@@ -191,7 +190,7 @@ class TruthReader {
   }
 
   void find_columns() {
-    const std::string advice = "give a table that exactff wrote, or exact.csv of `exactff compare`";
+    const std::string advice = "give a table that exactff wrote";
     const std::string& column = truth_.column;
     receiver_ = csv_.head() ? csv_.needed_column({truth_.keys[0]}, "it identifies the rows", advice)
                             : csv_.needed_column({"receiver", "id"}, "it identifies the rows", advice);
@@ -461,7 +460,7 @@ Candidate read_candidate(const std::filesystem::path& path, const Truth& truth, 
                          MatchBy by) {
   const kernel::StandardArithmetic arithmetic;
   const bool has_two_keys = !truth.keys[1].empty() && truth.keys[1].find(Input::kBetweenKeys) == std::string::npos;
-  const bool like_matrix = !truth.kind.empty() && truth.kind != "truth" && has_two_keys;
+  const bool like_matrix = !truth.kind.empty() && truth.keys[0] != "receiver" && has_two_keys;
   if (by == MatchBy::kReceiver && like_matrix) {
     matrix::Order order = order_of(truth);
     if (!columns.receiver.empty()) order.keys[0] = columns.receiver;

@@ -4,7 +4,7 @@
 
 #include "exactff/version.h"
 #include "kernel/expect.h"
-#include "vtk/face_field.h"
+#include "vtk/vtk.h"
 
 namespace exactff::matrix {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "exactff/version.h"
-#include "vtk/face_field.h"
+#include "vtk/vtk.h"
 
 namespace exactff::radiosity {
 

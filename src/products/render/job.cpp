@@ -5,12 +5,10 @@
 
 #include "exactff/version.h"
 #include "jobs/kept_work.h"
-#include "kernel/float_environment.h"
 #include "scene/scene.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
-#include "text/text_lines.h"
 
 namespace exactff::render {
 
@@ -223,6 +221,23 @@ whole_view::LightFormula Job::formula(FaceId face, bool back) const {
   return whole_view::light_formula(*request_.scene, std::span(&face, 1),
                                    back ? whole_view::FaceSide::kBack : whole_view::FaceSide::kFront, request_.quantity,
                                    request_.ke);
+}
+
+// --- Identity ---
+
+std::string identity_of(const Request& request, const std::optional<methods::Choice>& against) {
+  std::string all =
+      request.scene->hash() + '\n' + flags_of(request.view) + '\n' + std::string(to_string(request.quantity)) + '\n';
+  for (const Selection& source : request.sources) all += request.scene->name_of(source) + '\n';
+  if (request.sky) all += "and the sky\n";
+  if (request.radiosities) all += "radiosities of " + request.radiosities->name + '\n';
+  all += (request.method ? request.method->text() : "exact") + '\n' + (against ? against->text() : "") + '\n';
+  for (const int number :
+       {static_cast<int>(request.ke), static_cast<int>(request.sides), request.spp, static_cast<int>(request.bounds),
+        static_cast<int>(request.layers), static_cast<int>(request.shown)}) {
+    all += std::to_string(number) + ' ';
+  }
+  return all;
 }
 
 }  // namespace exactff::render

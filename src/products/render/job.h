@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -85,5 +86,10 @@ class Painter {
   std::unique_ptr<methods::Evaluator> evaluator_;
   std::vector<methods::Estimate> estimates_;
 };
+
+// --- Which picture unfinished tiles belong to ---
+
+// Everything that the tiles of a picture, and those of the method that it is compared with, depend on.
+[[nodiscard]] std::string identity_of(const Request& request, const std::optional<methods::Choice>& against);
 
 }  // namespace exactff::render

@@ -2,10 +2,8 @@
 // plane are clipped in doubles; whether solids overlap is told by points just inside them and by edges that pierce
 // faces.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -17,12 +15,9 @@
 #include "scene/closed_surfaces.h"
 #include "scene/contacts.h"
 #include "scene/scene.h"
-#include "scene/selections.h"
 #include "scene/solids.h"
-#include "slips/findings.h"
-#include "slips/overlaps.h"
+#include "slips/flip_trial.h"
 #include "slips/sight_lines.h"
-#include "slips/solid_angles.h"
 #include "text/phrases.h"
 #include "text/text_lines.h"
 

@@ -10,10 +10,8 @@
 #include <iterator>
 
 #include "kernel/vec.h"
-#include "slips/overlaps.h"
 
 namespace exactff::slips {
-
 namespace {
 
 using kernel::difference;

@@ -7,10 +7,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <initializer_list>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,8 +19,7 @@
 #include "exactff/study.h"
 #include "page/chapter.h"
 #include "page/gnuplot.h"
-#include "study/settings.h"
-#include "table/csv.h"
+#include "table/rows.h"
 
 namespace exactff::experiments {
 
@@ -51,47 +49,12 @@ struct Experiment {
 
 // --- shared by several experiments ---
 
-// Triangles with a common normal that all face the receiver. Each is a source.
-struct KarkanisScene {
-  Scene scene;
-  Receiver receiver;
-  std::vector<Selection> triangles;
-};
-[[nodiscard]] KarkanisScene karkanis_scene(int triangles, std::uint64_t seed);
-
-// A method prepared for a scene and its sources. For one thread at a time.
-class Bench {
- public:
-  Bench(const methods::Choice& choice, const Scene& scene, std::span<const Selection> sources)
-      : prepared_(*choice.method, scene, sources), setting_(prepared_, choice.settings) {}
-  // The values of all sources, in their order.
-  std::span<const methods::Estimate> look_from(const Receiver& receiver) { return setting_.look_from(receiver); }
-
- private:
-  study::PreparedMethod prepared_;
-  study::ReadySetting setting_;
-};
-
-// The time of one call in seconds, on a steady clock: the median of up to `repeats` calls after a warm-up call, as long
-// as they take less than a second together. If the first call takes longer than that, its time is the result.
-[[nodiscard]] double median_seconds(const std::function<void()>& call, std::size_t repeats = 5);
-
-// A slope with two decimals and a true minus sign.
-[[nodiscard]] std::string slope_text(double slope);
-
-// "1.5 %"
-[[nodiscard]] std::string percent(double share);
-
-// Writes a CSV file: comment lines (#) that describe it, the column names, rows.
-class TableWriter {
- public:
-  TableWriter(std::string_view about, std::initializer_list<std::string_view> columns);
-  [[nodiscard]] table::CsvLine row() { return table::CsvLine(out_); }
-  [[nodiscard]] CsvFile finish(std::string file, std::string holds) const;
-
- private:
-  std::ostringstream out_;
-};
+// `experiment`: its name. `about`: what the rows are.
+[[nodiscard]] table::Rows rows_of(std::string_view experiment, std::string about,
+                                  std::initializer_list<table::Columns> columns);
+[[nodiscard]] CsvFile csv_file(table::Rows rows, std::string file, std::string holds);
+// Columns of results.
+[[nodiscard]] table::Columns estimates(std::string_view names, std::string unit = {});
 
 // --- hemicube-scatter ---
 //
@@ -114,25 +77,8 @@ struct ScatterPoint {
   std::vector<double> hemicube;  // indexed by resolution
 };
 
-struct ScatterDecade {
-  int exponent = 0;  // exact values from 10^exponent to 10^(exponent + 1)
-  std::size_t visible = 0;
-  std::size_t missed = 0;
-  double median = 0.0;  // of |hemicube - exact| / exact
-  double p99 = 0.0;
-};
-
 // Every triangle of every scene, including hidden ones.
 [[nodiscard]] std::vector<ScatterPoint> scatter_points(const ScatterSize& size, int threads, const Hooks& hooks);
-
-// Results for one resolution (an index into the list), over the visible triangles. Decades without a triangle are left
-// out.
-[[nodiscard]] std::vector<ScatterDecade> scatter_decades(std::span<const ScatterPoint> points, std::size_t resolution);
-
-// For each scene, the slope of log(|error| / exact) over log(exact), for triangles larger than a pixel. Scenes with
-// fewer than ten such triangles are left out.
-[[nodiscard]] std::vector<double> scatter_slopes(std::span<const ScatterPoint> points, const ScatterSize& size,
-                                                 std::size_t resolution);
 
 [[nodiscard]] Result hemicube_scatter(const ScatterSize& size, int threads, const Hooks& hooks);
 [[nodiscard]] Result hemicube_scatter(const Effort& effort, const Hooks& hooks);
@@ -143,15 +89,12 @@ struct ScatterDecade {
 //
 // For 50, 100, 200 and 500 triangles he measured 0.2 s, 2.8 s, 300 s and about 8 h on a 300 MHz Pentium II, in floating
 // point. Here every triangle of such a scene is the source in turn, and its form factor is certified, with and without
-// the shaft that excludes most of the other triangles. For comparison: the hemicube, which computes all sources in one
-// pass, and rays.
+// the shaft that excludes most of the other triangles.
 
 struct TimesSize {
   std::vector<int> triangles = {50, 100, 200, 500, 1000, 2000, 5000, 10000};
-  int same_bits_up_to = 500;     // triangles: up to here, values with and without the shaft are compared
-  double budget = 20.0;          // seconds; a measurement without the shaft that would take longer is left out
-  int rays = 10'000;             // to each patch
-  std::size_t ray_patches = 16;  // timed patches, extrapolated to all
+  int same_bits_up_to = 500;  // triangles: up to here, values with and without the shaft are compared
+  double budget = 20.0;       // seconds; a measurement without the shaft that would take longer is left out
 };
 
 // Results that are the same on every run.

@@ -16,6 +16,21 @@
 namespace exactff::experiments {
 namespace {
 
+using table::counts;
+using table::keys;
+using table::texts;
+using table::Type;
+
+// A slope with two decimals and a true minus sign.
+std::string slope_text(double slope) {
+  const long hundredths = std::lround(std::abs(slope) * 100.0);
+  const std::string digits = std::to_string(100 + hundredths % 100).substr(1);
+  return (slope < 0.0 && hundredths > 0 ? "−" : "") + std::to_string(hundredths / 100) + '.' + digits;
+}
+
+// "1.5 %"
+std::string percent(double share) { return text::rounded(100.0 * share, 2) + " %"; }
+
 using text::counted;
 using text::rounded;
 
@@ -304,46 +319,48 @@ page::Figure error_map(const MeshingLevel& level, const MeshingSize& size) {
 }
 
 CsvFile meshing_values(const MeshingStudy& study) {
-  TableWriter table(
-      "errors of pictures from cells of one radiosity against that of the finest cells, over its brightest "
-      "pixel; half_width: of the bounds of a pixel, RMS",
-      {"parts", "cells", "patch", "pixels", "mean_ratio", "rms", "p99", "worst", "half_width"});
+  table::Rows rows =
+      rows_of("meshing",
+              "errors of pictures from cells of one radiosity against that of the finest cells, over its brightest "
+              "pixel; half_width: of the bounds of a pixel, RMS",
+              {keys("parts", Type::kCount), counts("cells"), keys("patch"), counts("pixels"),
+               estimates("mean_ratio,rms,p99,worst,half_width")});
   const auto add = [&](const MeshingLevel& level, const std::string& patch, const MeshingErrors& e) {
     if (e.pixels == 0) return;
-    table.row() << level.parts << level.cells << patch << e.pixels << e.mean_ratio << e.rms << e.p99 << e.worst
-                << level.half_width;
+    rows << level.parts << level.cells << patch << e.pixels << e.mean_ratio << e.rms << e.p99 << e.worst
+         << level.half_width;
   };
   for (const MeshingLevel& level : study.levels) {
     add(level, "all", level.all);
     for (std::size_t p = 0; p < study.patches.size(); ++p) add(level, study.patches[p], level.patches[p]);
   }
-  return table.finish("meshing.csv", "errors of gathered pictures by the size of cells and by surface");
+  return csv_file(std::move(rows), "meshing.csv", "errors of gathered pictures by the size of cells and by surface");
 }
 
 CsvFile meshing_map_values(const MeshingStudy& study, const MeshingSize& size) {
-  TableWriter table(
-      "errors of pictures from cells of one radiosity, pixel by pixel from the top left, over the brightest",
-      {"parts", "column", "row", "patch", "error"});
+  table::Rows rows = rows_of(
+      "meshing", "errors of pictures from cells of one radiosity, pixel by pixel from the top left, over the brightest",
+      {keys("parts,column,row", Type::kCount), texts("patch"), estimates("error")});
   const auto pixels = static_cast<std::size_t>(size.pixels);
   for (const MeshingLevel& level : study.levels) {
     for (std::size_t i = 0; i < level.errors.size(); ++i) {
       if (std::isnan(level.errors[i])) continue;
-      table.row() << level.parts << i % pixels << i / pixels << study.patches[study.patch_of_pixel[i]]
-                  << level.errors[i];
+      rows << level.parts << i % pixels << i / pixels << study.patches[study.patch_of_pixel[i]] << level.errors[i];
     }
   }
-  return table.finish("meshing-map.csv", "errors of gathered pictures by pixel");
+  return csv_file(std::move(rows), "meshing-map.csv", "errors of gathered pictures by pixel");
 }
 
 CsvFile meshing_times(const MeshingStudy& study) {
-  TableWriter table("processor seconds of the radiosities, and of the picture",
-                    {"parts", "cells", "matrix_seconds", "image_seconds"});
+  table::Rows rows =
+      rows_of("meshing", "processor seconds of the radiosities, and of the picture",
+              {keys("parts", Type::kCount), counts("cells"), estimates("matrix_seconds,image_seconds", "s")});
   const auto add = [&](const MeshingLevel& level) {
-    table.row() << level.parts << level.cells << level.matrix_seconds << level.image_seconds;
+    rows << level.parts << level.cells << level.matrix_seconds << level.image_seconds;
   };
   std::ranges::for_each(study.levels, add);
   add(study.reference);
-  return table.finish("meshing-times.csv", "processor time by the size of cells");
+  return csv_file(std::move(rows), "meshing-times.csv", "processor time by the size of cells");
 }
 
 }  // namespace

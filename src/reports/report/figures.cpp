@@ -8,7 +8,6 @@
 #include "kernel/statistics.h"
 #include "page/gnuplot.h"
 #include "report/report.h"
-#include "report/verdicts.h"
 #include "study/settings.h"
 #include "study/statistics.h"
 #include "text/escape.h"
@@ -546,7 +545,7 @@ class FigureMaker {
     page::Map map = map_of(grid, "approximate − exact (radiosity)", page::MapColours::kDiverging,
                            [&](std::size_t i) { return shown.errors[i]; });
     const std::vector<double> magnitudes = magnitudes_of(map);
-    map.largest = kernel::percentile(magnitudes, 99.0);
+    map.largest = kernel::nearest_rank(magnitudes, 0.99);
     if (map.largest == 0.0) map.largest = std::ranges::max(magnitudes);
     if (!(map.largest > 0.0)) {
       leave_out("map of the signed error", shown.title + " has no error anywhere");

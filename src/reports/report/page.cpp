@@ -7,7 +7,6 @@
 
 #include "page/page_text.h"
 #include "report/report.h"
-#include "report/verdicts.h"
 #include "study/settings.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -47,7 +46,6 @@ class ScenePart {
                         figure_group(
                             page_.drawn, [](const page::Figure& figure) { return figure.map; }, true));
     text_ += page::fold("Every method and setting", methods_table() + ranges());
-    text_ += page::fold("Every setting of Tampieri’s algorithm", settings_table());
     if (!page_.left_out.empty()) text_ += page::fold("What was left out, and why", left_out_list(page_.left_out));
     text_ += "</section>\n";
     return std::move(text_);
@@ -56,7 +54,6 @@ class ScenePart {
  private:
   [[nodiscard]] const Study& study() const { return scene_.study; }
   [[nodiscard]] bool is_swept() const { return !study().settings.empty(); }
-  [[nodiscard]] bool partly() const { return study().receivers_by_sight[static_cast<std::size_t>(Sight::kPartly)] > 0; }
 
   void opening() {
     text_ += "<p class=\"subtitle\">" + text::counted(study().exact.size(), "receiver") + " (" +
@@ -168,7 +165,6 @@ class ScenePart {
     for (const char* heading : {"middle setting", "partly hidden: fitted", "theory", "visible: fitted", "theory"}) {
       table.column(heading, kText);
     }
-    std::set<std::string> reasons;
     for (std::size_t l = 0; l < methods.ladders.size() && l < methods.slopes.size(); ++l) {
       const Ladder& ladder = methods.ladders[l];
       if (ladder.rungs.front().method->name == "exact") continue;
@@ -181,21 +177,18 @@ class ScenePart {
                  kText);
       for (const Sight sight : {Sight::kPartly, Sight::kVisible}) {
         const auto& slope = sight == Sight::kPartly ? methods.slopes[l].partly : methods.slopes[l].visible;
-        const SlopeWords words = slope ? slope_words(*slope, ladder, sight) : SlopeWords{"–", {}, {}};
+        const SlopeWords words = slope ? slope_words(*slope, ladder, sight) : SlopeWords{"–", {}};
         table.cell(words.fitted, kText);
         table.cell(words.theory, kText);
-        if (!words.reason.empty()) reasons.insert("The exponent of " + ladder.name + " is " + words.reason + ".");
       }
     }
     if (methods.slopes.empty() || methods.cells.size() < 2) return {};
-    std::string notes;
-    for (const std::string& reason : reasons) notes += page::paragraph(text::html(reason));
     return "<h3 class=\"part\">Exponents of error against work</h3>\n" +
            page::paragraph(
                "Error = c · work<sup>p</sup>, fitted over the settings of a method, where the source is "
                "partly hidden and where all of it is visible, with 95 % confidence intervals over the "
                "seeds of stochastic methods.") +
-           table.text() + '\n' + notes;
+           table.text() + '\n';
   }
 
   [[nodiscard]] std::string sweep_part() const {
@@ -275,54 +268,6 @@ class ScenePart {
     std::string text;
     for (const std::string& sentence : range_sentences(study())) text += page::paragraph(text::html(sentence));
     return text;
-  }
-
-  [[nodiscard]] std::string settings_table() const {
-    if (!is_swept()) return {};
-    HtmlTable table(HtmlTable::Shape::kWide);
-    table.columns({"#", "ε_B", "rays"});
-    table.column("pattern", kText);
-    table.columns({"ε_A", "seed"});
-    table.column("variant", kText);
-    table.columns({"RMS", "mean", "p99", "worst", "off", "leaves", "rays traced", "silent", "time per receiver"});
-    if (partly()) table.column("partly hidden");
-    exact_row(table);
-    for (std::size_t k = 0; k < study().settings.size(); ++k) setting_row(table, k);
-    return page::paragraph(
-               "Errors are in radiosity, approximate minus exact, over all receivers. The marked row is the base "
-               "setting; each sweep varies one parameter of it. “Off” is the share of receivers whose error exceeds "
-               "ε_B. “Silent” counts the leaves with a silent error: all their rays agreed, and were wrong for a part "
-               "of the leaf. Times are those at the receivers at which all methods are compared" +
-               std::string(partly() ? "; the last column covers only those that see the source partly hidden." : ".")) +
-           table.text() + '\n';
-  }
-
-  void exact_row(HtmlTable& table) const {
-    table.row("exact");
-    table.cell("");
-    table.cell("exact", kText, 6);
-    table.cells({"0", "0", "0", "0", "0 %", "", "", ""});
-    times(table, study().exact_time);
-  }
-
-  void times(HtmlTable& table, const TimeSummary& t) const {
-    table.cell(text::duration(t.mean));
-    if (partly()) table.cell(text::duration(t.mean_partly));
-  }
-
-  void setting_row(HtmlTable& table, std::size_t k) const {
-    const AdaptiveOptions& s = study().settings[k];
-    const Summary& summary = study().summaries[k];
-    table.row(k == study().base ? "base" : "");
-    table.cells({std::to_string(k + 1), text::rounded(s.eps_b), std::to_string(s.rays)});
-    table.cell(std::string(to_string(s.pattern)), kText);
-    table.cells({text::rounded(s.eps_a), std::to_string(s.seed)});
-    table.cell(std::string(to_string(s.variant)), kText);
-    const ErrorStatistics& e = summary.radiosity;
-    table.cells({signed_number(e.rms), signed_number(e.mean), signed_number(e.p99), signed_number(e.worst),
-                 text::share(summary.violations, study().exact.size()), std::to_string(summary.leaves),
-                 std::to_string(summary.rays), std::to_string(summary.silent_leaves)});
-    times(table, study().times[k]);
   }
 
   const SceneChapter& scene_;

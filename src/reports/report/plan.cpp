@@ -14,8 +14,6 @@
 #include "page/chapter.h"
 #include "page/output_folder.h"
 #include "report/report.h"
-#include "report/verdicts.h"
-#include "text/escape.h"
 #include "text/hashes.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -139,16 +137,14 @@ void write_tables(const SceneChapter& scene, const std::filesystem::path& folder
   for (const StudyTable& table : tables()) {
     if (!table.has_rows(scene.study)) continue;
     files::require_not_cancelled(hooks);
-    files::write_file(folder / file_name(scene, table), [&](std::ostream& out) { table.write(scene.study, out); });
+    table::write(table.make(scene.study), folder / file_name(scene, table));
   }
 }
 
 void write_tables(const page::Chapter& chapter, const std::filesystem::path& folder) {
   for (const auto* list : {&chapter.values, &chapter.times}) {
     for (const page::CsvFile& table : *list) {
-      files::write_file(folder / table.file, [&](std::ostream& out) {
-        out << "# " << text::program_version() << " compare: " << text::csv_comment(table.holds) << '\n' << table.csv;
-      });
+      files::write_file(folder / table.file, [&](std::ostream& out) { out << table.csv; });
     }
   }
 }

@@ -2,16 +2,17 @@
 // page.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>
-#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "exactff/methods.h"
 #include "exactff/study.h"
+#include "exactff/table.h"
 #include "page/chapter.h"
 
 namespace exactff::report {
@@ -53,15 +54,15 @@ std::vector<std::string> write(const StudyReport& report, const std::filesystem:
 
 // --- tables ---
 //
-// The CSV files of a study. Every file begins with comment lines (#) that state the version, the scene, the seeds and
-// everything else that its values depend on; then comes one header row. Doubles are the shortest decimals that read
-// back unchanged.
+// The tables of a study. Their heads state the scene, the seeds and everything else that the values depend on.
 
 struct StudyTable {
   std::string_view file;   // that of times ends in "timings.csv"; others have the same bytes on every run
   std::string_view holds;  // for the report's list of files
-  void (*write)(const Study& study, std::ostream& out);
+  table::Table (*fill)(const Study& study, table::Head head);
   bool (*has_rows)(const Study& study);  // a table without rows is left out
+
+  [[nodiscard]] table::Table make(const Study& study) const;
 };
 
 // In the order of the report's list.
@@ -134,5 +135,76 @@ struct Pages {
 using WantsFigure = std::function<bool(const page::Figure& figure)>;
 [[nodiscard]] std::string figure_group(const page::DrawnFigures& drawn, const WantsFigure& wants, bool maps = false);
 [[nodiscard]] std::string left_out_list(const std::vector<LeftOut>& items);
+
+// --- Verdicts ---
+
+// Conclusions from the runs of the methods: which is cheapest for a wanted error, and what theory predicts for the
+// slopes.
+//
+// All conclusions are drawn from the same runs, MethodStudy::cells, by the same two numbers: the RMS error over the
+// chosen receivers and seeds, divided by the radiosity of the brightest receiver, and the time per receiver for all
+// sources, averaged over the chosen receivers.
+
+inline constexpr std::array kWantedErrors = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
+
+[[nodiscard]] double relative_error(const Study& study, const MethodCell& cell);
+[[nodiscard]] bool is_exact(const Study& study, const MethodCell& cell);
+// Null if the exact method is not among the ladders.
+[[nodiscard]] const MethodCell* exact_cell(const Study& study);
+// That of a setting of the sweeps; null if it was not run at the chosen receivers.
+[[nodiscard]] const MethodCell* cell_of_setting(const Study& study, std::size_t setting);
+
+// False for the control, which is given the exact visibilities and so is not a method that anybody could use instead.
+[[nodiscard]] bool is_rival(const Study& study, const MethodCell& cell);
+
+// The fastest cell among those with an error of at most `wanted`: of one ladder, or of all rivals of the exact method.
+[[nodiscard]] const MethodCell* cheapest(const Study& study, double wanted, std::optional<std::size_t> ladder = {});
+
+// The cell of the ladder with the smallest error; null if none was run.
+[[nodiscard]] const MethodCell* most_accurate(const Study& study, std::size_t ladder);
+
+// The cells that no other cell beats in both time and accuracy, by increasing time. Without the control.
+[[nodiscard]] std::vector<const MethodCell*> pareto_front(const Study& study);
+
+// "area sampling, stratified, samples 64".
+[[nodiscard]] std::string cell_name(const Study& study, const MethodCell& cell);
+// "1e-4" in typeset form: "10⁻⁴".
+[[nodiscard]] std::string power_of_ten(double value);
+
+// The time of an exact value that a chapter states.
+[[nodiscard]] double exact_seconds(const Study& study);
+
+// The rival that a verdict recommends where its error will do: the most accurate of those that are at least as fast as
+// the exact method. Null if there is none.
+[[nodiscard]] const MethodCell* recommended(const Study& study);
+
+// The main result in a few sentences.
+[[nodiscard]] std::vector<std::string> headlines(const Study& study);
+
+// One sentence that says when to use the exact method and when another one.
+[[nodiscard]] std::string verdict(const Study& study);
+
+// What the runs of Tampieri's algorithm over its settings show, in sentences; empty without such runs.
+[[nodiscard]] std::vector<std::string> sweep_findings(const Study& study);
+
+// Sentences that can be quoted: what other methods need for a similar accuracy, and the verdict; empty without others.
+[[nodiscard]] std::vector<std::string> method_sentences(const Study& study);
+
+// Says that the machine's speed drifted while times were measured; empty if it did not.
+[[nodiscard]] std::string drift_warning(const Study& study);
+
+// For each method, and each variant of the sweeps: how many values are not finite, and how many lie outside [0, 1] by
+// more than rounding. One sentence for each that has any. Values are sums over the sources.
+[[nodiscard]] std::vector<std::string> range_sentences(const Study& study);
+
+// Receivers that were probably meant to lie on a face (near_misses), in sentences.
+[[nodiscard]] std::vector<std::string> receiver_warnings(const Study& study);
+
+// A fitted slope: "−0.75 (−0.8 to −0.7)"; and the slope that theory expects, if it expects one: "−3/4 with one shadow
+// edge across the source".
+struct SlopeWords {
+  std::string fitted, theory;
+};
+[[nodiscard]] SlopeWords slope_words(const Slope& slope, const Ladder& ladder, Sight sight);
 
 }  // namespace exactff::report

@@ -4,26 +4,30 @@
 
 #include "exactff/version.h"
 #include "report/report.h"
-#include "report/verdicts.h"
 #include "study/settings.h"
 #include "study/statistics.h"
-#include "table/csv.h"
-#include "text/escape.h"
+#include "table/rows.h"
 #include "text/phrases.h"
 #include "vtk/vtk.h"
 
 namespace exactff::report {
 namespace {
 
-template <class List, class Text>
-void write_list(std::ostream& out, std::string_view name, const List& list, const Text& text) {
-  out << "# " << name << ": ";
-  for (std::size_t i = 0; i < list.size(); ++i) out << (i > 0 ? "," : "") << text(list[i]);
-  out << '\n';
-}
+using table::Columns;
+using table::counts;
+using table::keys;
+using table::numbers;
+using table::Rows;
+using table::Strength;
+using table::Table;
+using table::texts;
+using table::Type;
 
-void write_names(std::ostream& out, std::string_view name, std::string names) {
-  if (!names.empty()) out << "# " << name << ": " << text::csv_comment(std::move(names)) << '\n';
+template <class List, class Text>
+std::vector<std::string> listed(const List& list, const Text& text) {
+  std::vector<std::string> texts;
+  for (const auto& one : list) texts.emplace_back(text(one));
+  return texts;
 }
 
 std::string joined_names(const Scene& scene, std::span<const Selection> selections) {
@@ -32,30 +36,37 @@ std::string joined_names(const Scene& scene, std::span<const Selection> selectio
   return names;
 }
 
-// The comment lines at the beginning of every file.
-void write_head(const Study& study, std::ostream& out, std::string_view what) {
-  const Sweeps& sweeps = study.request.sweeps;
+// `holds`: as in the report's list of files.
+table::Head head_of(const Study& study, std::string_view holds) {
+  const study::Request& request = study.request;
+  const Sweeps& sweeps = request.sweeps;
   const auto number = [](double v) { return text::shortest(v); };
+  const auto whole = [](auto v) { return std::to_string(v); };
   const auto name = [](auto v) { return to_string(v); };
-  out << "# " << text::program_version() << " compare: " << text::csv_comment(what) << '\n'
-      << "# scene: " << text::csv_comment(study.request.scene_name) << ", hash " << study.request.scene->hash() << '\n';
-  write_names(out, "flipped", flipped_names(study));
-  write_names(out, "transparent", transparent_names(study));
-  out << "# receivers: " << text::csv_comment(study.request.receivers_name) << '\n'
-      << "# sources: " << text::csv_comment(source_names(study)) << '\n';
-  for (const std::string& sentence : receiver_warnings(study)) {
-    out << "# warning: " << text::csv_comment(sentence) << '\n';
-  }
+  table::Head head;
+  head.set("about", std::string(holds));
+  head.set("scene", request.scene_name);
+  head.set("scene_hash", request.scene->hash());
+  const auto set = [&](std::string_view word, std::vector<std::string> list) {
+    if (!list.empty()) head.set(word, std::move(list));
+  };
+  const auto name_of = [&](const Selection& one) { return request.scene->name_of(one); };
+  set("flipped", listed(request.scene->flipped(), name_of));
+  set("transparent", listed(request.scene->transparent(), name_of));
+  head.set("receivers", request.receivers_name);
+  set("sources", listed(request.sources, name_of));
+  set("warnings", receiver_warnings(study));
   if (sweeps.enabled) {
-    write_list(out, "eps_B", sweeps.eps_b, number);
-    write_list(out, "eps_A", sweeps.eps_a, number);
-    write_list(out, "rays", sweeps.rays, [](int v) { return v; });
-    write_list(out, "seeds", sweeps.seeds, [](std::uint64_t v) { return v; });
-    write_list(out, "patterns", sweeps.patterns, name);
-    write_list(out, "variants", sweeps.variants, name);
-    out << "# settings: " << (study.full_product ? "every combination" : "sweeps through a base") << '\n';
+    set("eps_b", listed(sweeps.eps_b, number));
+    set("eps_a", listed(sweeps.eps_a, number));
+    set("rays", listed(sweeps.rays, whole));
+    set("seeds", listed(sweeps.seeds, whole));
+    set("patterns", listed(sweeps.patterns, name));
+    set("variants", listed(sweeps.variants, name));
+    head.set("settings", std::string(study.full_product ? "every combination" : "sweeps through a base"));
   }
-  for (const LeftOut& item : study.left_out) out << "# left out: " << item.what << ": " << item.why << '\n';
+  set("left_out", listed(study.left_out, [](const LeftOut& item) { return item.what + ": " + item.why; }));
+  return head;
 }
 
 // --- the exact values, and the sweeps ---
@@ -68,112 +79,126 @@ std::string column_name(std::string_view words) {
   return name;
 }
 
-constexpr std::string_view kSettingColumns = "setting,variant,pattern,seed,eps_b,eps_a,rays_per_leaf";
-
-// Setting numbers start at 1.
-void put_setting(table::CsvLine& row, const Study& study, std::size_t k) {
-  const AdaptiveOptions& s = study.settings[k];
-  row << std::uint64_t{k + 1} << to_string(s.variant) << to_string(s.pattern) << s.seed << s.eps_b << s.eps_a << s.rays;
+Columns estimates(std::string_view names, std::string unit = {}) {
+  return numbers(names, Strength::kEstimated, std::move(unit));
+}
+Columns certified(std::string_view names) { return numbers(names, Strength::kCertified); }
+Columns place() { return numbers("x,y,z", Strength::kGiven, "length"); }
+Columns setting() { return keys("setting", Type::kCount); }
+Columns parameters() {
+  const table::Column count{.name = {}, .type = Type::kCount};
+  return table::joined({texts("variant,pattern"), table::columns("seed", count),
+                        numbers("eps_b", Strength::kGiven, "Ke"), numbers("eps_a", Strength::kGiven, "area"),
+                        table::columns("rays_per_leaf", count)});
 }
 
-void write_exact(const Study& study, std::ostream& out) {
+// Setting numbers start at 1.
+void put_setting(Rows& rows, const Study& study, std::size_t k) {
+  const AdaptiveOptions& s = study.settings[k];
+  rows << k + 1 << to_string(s.variant) << to_string(s.pattern) << s.seed << s.eps_b << s.eps_a << s.rays;
+}
+
+Table exact_table(const Study& study, table::Head head) {
   const Scene& scene = *study.request.scene;
-  write_head(study, out, "exact values");
-  out << "receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,status,sight,visible_fraction,radiosity_r,radiosity_g,"
-         "radiosity_b\n";
+  Rows rows(
+      "compare exact", std::move(head),
+      {keys("receiver"), texts("on"), place(), numbers("nx,ny,nz", Strength::kGiven, "of any length"), keys("source"),
+       certified("exact"), numbers("lower,upper", Strength::kProved), texts("status,sight", Strength::kProved),
+       certified("visible_fraction"), estimates("radiosity_r,radiosity_g,radiosity_b", "Ke")});
   for (std::size_t i = 0; i < study.exact.size(); ++i) {
     const Receiver& receiver = study.request.receivers[i];
     const Rgb rho = scene.receiver_reflectance(receiver.on);
     for (std::size_t s = 0; s < study.request.sources.size(); ++s) {
       const ExactTerm& term = study.exact[i].terms[s];
       const Rgb b = scene.source_radiosity(study.request.sources[s]);
-      table::CsvLine(out) << receiver.id << on_name(study, receiver) << receiver.point << receiver.normal
-                          << scene.name_of(study.request.sources[s]) << term.value << term.lower << term.upper
-                          << to_string(term.status) << to_string(term.sight) << term.visible_fraction
-                          << rho.r * b.r * term.value << rho.g * b.g * term.value << rho.b * b.b * term.value;
+      rows << receiver.id << on_name(study, receiver) << receiver.point << receiver.normal
+           << scene.name_of(study.request.sources[s]) << term.value << term.lower << term.upper
+           << to_string(term.status) << to_string(term.sight) << term.visible_fraction << rho.r * b.r * term.value
+           << rho.g * b.g * term.value << rho.b * b.b * term.value;
     }
   }
+  return rows.take();
 }
 
-void write_values(const Study& study, std::ostream& out) {
-  write_head(study, out, "values");
-  out << "receiver,on,x,y,z,source," << kSettingColumns
-      << ",exact,approximate,error,exact_radiosity,radiosity_error,leaves,rays,shaft_tests";
+Table value_table(const Study& study, table::Head head) {
+  std::string reasons;
   for (std::size_t r = 0; r < kLeafReasonCount; ++r) {
-    out << ",leaves_" << column_name(to_string(static_cast<LeafReason>(r)));
+    reasons += (r > 0 ? ",leaves_" : "leaves_") + column_name(to_string(static_cast<LeafReason>(r)));
   }
-  out << ",silent_leaves,wrong_leaves,silent_error\n";
+  Rows rows("compare values", std::move(head),
+            {keys("receiver"), texts("on"), place(), texts("source"), setting(), parameters(), certified("exact"),
+             estimates("approximate,error"), estimates("exact_radiosity,radiosity_error", "Ke"),
+             counts("leaves,rays,shaft_tests"), counts(reasons), counts("silent_leaves,wrong_leaves"),
+             estimates("silent_error")});
   const std::string source = source_names(study);
   for (std::size_t i = 0; i < study.exact.size(); ++i) {
     const Receiver& receiver = study.request.receivers[i];
     const ExactRow& exact = study.exact[i];
     for (std::size_t k = 0; k < study.settings.size(); ++k) {
       const SampleRow& sample = study.samples[k][i];
-      table::CsvLine row(out);
-      row << receiver.id << on_name(study, receiver) << receiver.point << source;
-      put_setting(row, study, k);
-      row << exact.form_factor << sample.form_factor << sample.error << exact.radiosity.largest()
-          << sample.radiosity_error << sample.leaves << sample.rays << sample.shaft_tests;
-      for (std::uint64_t count : sample.leaves_by_reason) row << count;
-      row << sample.silent_leaves << sample.wrong_leaves << sample.silent_error;
+      rows << receiver.id << on_name(study, receiver) << receiver.point << source;
+      put_setting(rows, study, k);
+      rows << exact.form_factor << sample.form_factor << sample.error << exact.radiosity.largest()
+           << sample.radiosity_error << sample.leaves << sample.rays << sample.shaft_tests;
+      for (const std::uint64_t count : sample.leaves_by_reason) rows << count;
+      rows << sample.silent_leaves << sample.wrong_leaves << sample.silent_error;
     }
   }
+  return rows.take();
 }
 
-void put_statistics(table::CsvLine& row, const ErrorStatistics& s) { row << s.rms << s.mean << s.p99 << s.worst; }
+void put_statistics(Rows& rows, const ErrorStatistics& s) { rows << s.rms << s.mean << s.p99 << s.worst; }
 
-void write_summary(const Study& study, std::ostream& out) {
-  write_head(study, out, "summary");
-  out << kSettingColumns
-      << ",receivers,rms_f,mean_f,p99_f,worst_f,rms_radiosity,mean_radiosity,p99_radiosity,worst_radiosity,"
-         "violations,share_violating,leaves,rays,silent_leaves,wrong_leaves,silent_receivers,rms_silent_f,worst_silent_"
-         "f,"
-         "not_a_number\n";
+Table summary_table(const Study& study, table::Head head) {
+  Rows rows("compare summary", std::move(head),
+            {setting(), parameters(), counts("receivers"), estimates("rms_f,mean_f,p99_f,worst_f"),
+             estimates("rms_radiosity,mean_radiosity,p99_radiosity,worst_radiosity", "Ke"), counts("violations"),
+             estimates("share_violating"), counts("leaves,rays,silent_leaves,wrong_leaves,silent_receivers"),
+             estimates("rms_silent_f,worst_silent_f"), counts("not_a_number")});
   for (std::size_t k = 0; k < study.settings.size(); ++k) {
     const Summary& summary = study.summaries[k];
-    table::CsvLine row(out);
-    put_setting(row, study, k);
-    row << std::uint64_t{study.exact.size()};
-    put_statistics(row, summary.form_factor);
-    put_statistics(row, summary.radiosity);
-    row << std::uint64_t{summary.violations}
-        << static_cast<double>(summary.violations) / static_cast<double>(study.exact.size()) << summary.leaves
-        << summary.rays << summary.silent_leaves << summary.wrong_leaves << std::uint64_t{summary.silent_receivers}
-        << summary.silent.rms << summary.silent.worst << std::uint64_t{summary.form_factor.not_a_number};
+    put_setting(rows, study, k);
+    rows << study.exact.size();
+    put_statistics(rows, summary.form_factor);
+    put_statistics(rows, summary.radiosity);
+    rows << summary.violations << static_cast<double>(summary.violations) / static_cast<double>(study.exact.size())
+         << summary.leaves << summary.rays << summary.silent_leaves << summary.wrong_leaves << summary.silent_receivers
+         << summary.silent.rms << summary.silent.worst << summary.form_factor.not_a_number;
   }
+  return rows.take();
 }
 
-void write_timings(const Study& study, std::ostream& out) {
-  write_head(study, out, "time of single calls, one thread at work");
-  out << "receiver,on,setting,seconds\n";
+Table timing_table(const Study& study, table::Head head) {
+  Rows rows("compare timings", std::move(head),
+            {keys("receiver"), texts("on"), keys("setting"), estimates("seconds", "s")});
   for (const std::size_t i : study.timed) {
     const Receiver& receiver = study.request.receivers[i];
     const std::string on = on_name(study, receiver);
-    table::CsvLine(out) << receiver.id << on << "exact" << study.exact[i].seconds;
+    rows << receiver.id << on << "exact" << study.exact[i].seconds;
     for (std::size_t k = 0; k < study.settings.size(); ++k) {
       const double seconds = study.samples[k][i].seconds;
-      if (!std::isnan(seconds)) table::CsvLine(out) << receiver.id << on << std::uint64_t{k + 1} << seconds;
+      if (!std::isnan(seconds)) rows << receiver.id << on << k + 1 << seconds;
     }
   }
+  return rows.take();
 }
 
-void put_times(table::CsvLine& row, const TimeSummary& t) {
-  row << t.median << t.mean << t.median_partly << t.mean_partly;
-}
+void put_times(Rows& rows, const TimeSummary& t) { rows << t.median << t.mean << t.median_partly << t.mean_partly; }
 
-void write_summary_timings(const Study& study, std::ostream& out) {
-  write_head(study, out, "time per receiver, in seconds, one thread at work");
-  out << "# set up once: exact " << text::shortest(study.exact_setup_seconds) << ", ray structure "
-      << text::shortest(study.ray_setup_seconds) << '\n';
-  out << kSettingColumns
-      << ",median,mean,median_partly_hidden,mean_partly_hidden,exact_median,exact_mean,exact_median_partly_hidden,"
-         "exact_mean_partly_hidden\n";
+Table summary_timing_table(const Study& study, table::Head head) {
+  head.set("set_up_exact", study.exact_setup_seconds);
+  head.set("set_up_rays", study.ray_setup_seconds);
+  Rows rows("compare summary timings", std::move(head),
+            {setting(), parameters(),
+             estimates("median,mean,median_partly_hidden,mean_partly_hidden,exact_median,exact_mean,"
+                       "exact_median_partly_hidden,exact_mean_partly_hidden",
+                       "s")});
   for (std::size_t k = 0; k < study.settings.size(); ++k) {
-    table::CsvLine row(out);
-    put_setting(row, study, k);
-    put_times(row, study.times[k]);
-    put_times(row, study.exact_time);
+    put_setting(rows, study, k);
+    put_times(rows, study.times[k]);
+    put_times(rows, study.exact_time);
   }
+  return rows.take();
 }
 
 bool always(const Study&) { return true; }
@@ -185,115 +210,122 @@ bool has_cells(const Study& study) { return !study.methods.cells.empty(); }
 bool has_fields(const Study& study) { return has_cells(study) && study.request.methods.enabled; }
 bool has_profile(const Study& study) { return study.profile.has_value(); }
 
-constexpr std::string_view kCellColumns = "method,setting";
-
 const methods::Choice& choice_of(const Study& study, std::size_t ladder, std::size_t rung) {
   return study.methods.ladders[ladder].rungs[rung];
 }
 
-void put_choice(table::CsvLine& row, const methods::Choice& choice) {
-  row << choice.method->name << choice.settings.text();
+void put_choice(Rows& rows, const Study& study, const MethodCell& cell) {
+  const methods::Choice& choice = choice_of(study, cell.ladder, cell.rung);
+  rows << choice.method->name << choice.settings.text();
 }
 
-void write_methods(const Study& study, std::ostream& out) {
-  write_head(study, out, "methods against one another at chosen receivers; errors in radiosity");
-  out << kCellColumns
-      << ",seeds,receivers,work,rms,mean,p99,worst,rms_partly_hidden,rms_visible,rms_over_brightest,not_a_number\n";
+Table method_table(const Study& study, table::Head head) {
+  Rows rows("compare methods", std::move(head),
+            {keys("method,setting"), counts("seeds,receivers"), estimates("work"),
+             estimates("rms,mean,p99,worst,rms_partly_hidden,rms_visible", "Ke"), estimates("rms_over_brightest"),
+             counts("not_a_number")});
   const double brightest = study::largest_radiosity(study);
   for (const MethodCell& cell : study.methods.cells) {
-    table::CsvLine row(out);
-    put_choice(row, choice_of(study, cell.ladder, cell.rung));
-    row << std::uint64_t{cell.seeds.size()} << std::uint64_t{study.methods.receivers.size()} << cell.work
-        << cell.error.rms << cell.error.mean << cell.error.p99 << cell.error.worst << cell.error_partly.rms
-        << cell.error_visible.rms << (brightest > 0.0 ? cell.error.rms / brightest : 0.0)
-        << std::uint64_t{cell.error.not_a_number};
+    put_choice(rows, study, cell);
+    rows << cell.seeds.size() << study.methods.receivers.size() << cell.work;
+    put_statistics(rows, cell.error);
+    rows << cell.error_partly.rms << cell.error_visible.rms << (brightest > 0.0 ? cell.error.rms / brightest : 0.0)
+         << cell.error.not_a_number;
   }
+  return rows.take();
 }
 
-void write_method_seeds(const Study& study, std::ostream& out) {
-  write_head(study, out, "one row per method, setting and seed; errors in radiosity at the chosen receivers");
-  out << kCellColumns << ",seed,rms,mean,p99,worst\n";
+Table seed_table(const Study& study, table::Head head) {
+  Rows rows("compare seeds", std::move(head),
+            {keys("method,setting"), keys("seed", Type::kCount), estimates("rms,mean,p99,worst", "Ke")});
   for (const MethodCell& cell : study.methods.cells) {
     for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
-      const ErrorStatistics e = study::error_statistics(cell.radiosity_errors[s]);
-      table::CsvLine row(out);
-      put_choice(row, choice_of(study, cell.ladder, cell.rung));
-      row << cell.seeds[s] << e.rms << e.mean << e.p99 << e.worst;
+      put_choice(rows, study, cell);
+      rows << cell.seeds[s];
+      put_statistics(rows, study::error_statistics(cell.radiosity_errors[s]));
     }
   }
+  return rows.take();
 }
 
-void write_method_values(const Study& study, std::ostream& out) {
-  write_head(study, out, "one row per method, setting and chosen receiver, with the first seed");
-  out << kCellColumns << ",seed,receiver,exact,approximate,error,radiosity_error\n";
+Table method_value_table(const Study& study, table::Head head) {
+  Rows rows("compare method values", std::move(head),
+            {keys("method,setting"), keys("seed", Type::kCount), keys("receiver"), certified("exact"),
+             estimates("approximate,error"), estimates("radiosity_error", "Ke")});
   for (const MethodCell& cell : study.methods.cells) {
     for (std::size_t r = 0; r < study.methods.receivers.size(); ++r) {
       const std::size_t i = study.methods.receivers[r];
       const double exact = study.exact[i].form_factor, value = cell.values.front()[r];
-      table::CsvLine row(out);
-      put_choice(row, choice_of(study, cell.ladder, cell.rung));
-      row << cell.seeds.front() << study.request.receivers[i].id << exact << value << value - exact
-          << cell.radiosity_errors.front()[r];
+      put_choice(rows, study, cell);
+      rows << cell.seeds.front() << study.request.receivers[i].id << exact << value << value - exact
+           << cell.radiosity_errors.front()[r];
     }
   }
+  return rows.take();
 }
 
-void write_slopes(const Study& study, std::ostream& out) {
-  write_head(study, out, "error = c * work^exponent, fitted over the settings of a method; 95 % confidence intervals");
-  out << "method,where,exponent,low,high,seeds,settings\n";
+Table slope_table(const Study& study, table::Head head) {
+  Rows rows("compare slopes", std::move(head),
+            {keys("method,where"), estimates("exponent,low,high"), counts("seeds,settings")});
   for (std::size_t l = 0; l < study.methods.ladders.size(); ++l) {
     const auto put = [&](const char* where, const std::optional<Slope>& slope) {
       if (!slope) return;
-      table::CsvLine(out) << study.methods.ladders[l].name << where << slope->exponent << slope->low << slope->high
-                          << std::uint64_t{slope->seeds} << std::uint64_t{slope->rungs};
+      rows << study.methods.ladders[l].name << where << slope->exponent << slope->low << slope->high << slope->seeds
+           << slope->rungs;
     };
     put("partly hidden", study.methods.slopes[l].partly);
     put("visible", study.methods.slopes[l].visible);
   }
+  return rows.take();
 }
 
-void write_fields(const Study& study, std::ostream& out) {
-  write_head(study, out, "one row per receiver: what it sees, and the radiosity error of each method's middle setting");
-  out << "receiver,x,y,z,sight,visible_fraction,radiosity,distance_to_shadow_edge";
+Table receiver_table(const Study& study, table::Head head) {
+  Columns errors;
   for (const MethodField& field : study.methods.fields) {
-    out << ',' << text::csv_field(choice_of(study, field.ladder, field.rung).text());
+    errors.push_back({choice_of(study, field.ladder, field.rung).text(), Type::kNumber, "Ke", Strength::kEstimated});
   }
-  out << '\n';
+  Rows rows("compare receivers", std::move(head),
+            {keys("receiver"), place(), texts("sight", Strength::kProved), certified("visible_fraction"),
+             estimates("radiosity", "Ke"), estimates("distance_to_shadow_edge", "length"), errors});
   for (std::size_t i = 0; i < study.exact.size(); ++i) {
     const ExactRow& exact = study.exact[i];
-    table::CsvLine row(out);
-    row << study.request.receivers[i].id << study.request.receivers[i].point << to_string(exact.sight)
-        << exact.visible_fraction << exact.radiosity.largest();
-    row << (study.edge_distance.empty() ? std::nullopt : std::optional(study.edge_distance[i]));
-    for (const MethodField& field : study.methods.fields) row << field.radiosity_errors[i];
+    rows << study.request.receivers[i].id << study.request.receivers[i].point << to_string(exact.sight)
+         << exact.visible_fraction << exact.radiosity.largest()
+         << (study.edge_distance.empty() ? std::nullopt : std::optional(study.edge_distance[i]));
+    for (const MethodField& field : study.methods.fields) rows << field.radiosity_errors[i];
   }
+  return rows.take();
 }
 
-void write_profile(const Study& study, std::ostream& out) {
+Table profile_table(const Study& study, table::Head head) {
   const Profile& profile = *study.profile;
-  write_head(study, out, "radiosity along " + profile.where + ", largest channel");
-  for (const double kink : profile.kinks)
-    out << "# what is visible changes in kind at " << text::shortest(kink) << '\n';
-  out << "position,x,y,z,exact";
-  for (const Profile::Curve& curve : profile.others) out << ',' << text::csv_field(curve.name);
-  out << '\n';
-  for (std::size_t i = 0; i < profile.receivers.size(); ++i) {
-    table::CsvLine row(out);
-    row << profile.position[i] << profile.receivers[i].point << profile.exact[i];
-    for (const Profile::Curve& curve : profile.others) row << curve.radiosity[i];
+  head.set("along", profile.where);
+  head.set("visibility_changes_at", listed(profile.kinks, [](double at) { return text::shortest(at); }));
+  Columns curves;
+  for (const Profile::Curve& curve : profile.others) {
+    curves.push_back({curve.name, Type::kNumber, "Ke", Strength::kEstimated});
   }
+  Columns position = numbers("position", Strength::kGiven, "length");
+  position.front().key = true;
+  Rows rows("compare profile", std::move(head), {position, place(), estimates("exact", "Ke"), curves});
+  for (std::size_t i = 0; i < profile.receivers.size(); ++i) {
+    rows << profile.position[i] << profile.receivers[i].point << profile.exact[i];
+    for (const Profile::Curve& curve : profile.others) rows << curve.radiosity[i];
+  }
+  return rows.take();
 }
 
-void write_method_timings(const Study& study, std::ostream& out) {
-  write_head(study, out, "seconds per receiver and all sources, one thread at work");
-  if (const std::string drift = drift_warning(study); !drift.empty()) out << "# warning: " << drift << '\n';
-  out << kCellColumns << ",seconds,seconds_partly_hidden,seconds_set_up,times_exact,lower_quartile,upper_quartile\n";
+Table method_timing_table(const Study& study, table::Head head) {
+  if (const std::string drift = drift_warning(study); !drift.empty()) head.set("drift", drift);
+  Rows rows("compare method timings", std::move(head),
+            {keys("method,setting"), estimates("seconds,seconds_partly_hidden,seconds_set_up", "s"),
+             estimates("times_exact,lower_quartile,upper_quartile")});
   for (const MethodCell& cell : study.methods.cells) {
-    table::CsvLine row(out);
-    put_choice(row, choice_of(study, cell.ladder, cell.rung));
-    row << cell.seconds << cell.seconds_partly << study.methods.setup_seconds[cell.ladder]
-        << cell.seconds / exact_seconds(study) << cell.ratio_low << cell.ratio_high;
+    put_choice(rows, study, cell);
+    rows << cell.seconds << cell.seconds_partly << study.methods.setup_seconds[cell.ladder]
+         << cell.seconds / exact_seconds(study) << cell.ratio_low << cell.ratio_high;
   }
+  return rows.take();
 }
 
 // --- ParaView ---
@@ -354,25 +386,30 @@ std::vector<vtk::Field> fields_of(const Study& study) {
 
 }  // namespace
 
+table::Table StudyTable::make(const Study& study) const { return fill(study, head_of(study, holds)); }
+
 const std::vector<StudyTable>& tables() {
   static const std::vector<StudyTable> kTables = {
-      {"values.csv", "one row per receiver and setting: exact and approximate value, errors, work", write_values,
+      {"values.csv", "one row per receiver and setting: exact and approximate value, errors, work", value_table,
        has_settings},
-      {"exact.csv", "one row per receiver and source: the certified value with its bounds", write_exact, always},
-      {"summary.csv", "one row per setting: the error statistics", write_summary, has_settings},
-      {"timings.csv", "one row per receiver that was timed and method: the time of a single call", write_timings,
-       always},
+      {"exact.csv", "one row per receiver and source: the certified value with its bounds", exact_table, always},
+      {"summary.csv", "one row per setting: the error statistics", summary_table, has_settings},
+      {"timings.csv", "one row per receiver that was timed and method: the time of a single call, one thread at work",
+       timing_table, always},
       {"summary_timings.csv", "one row per setting: time per receiver, and that of the exact method",
-       write_summary_timings, has_settings},
-      {"methods.csv", "one row per method and setting at chosen receivers: work and error statistics over the seeds",
-       write_methods, has_cells},
-      {"method_seeds.csv", "the same for every seed", write_method_seeds, has_cells},
-      {"method_values.csv", "the values of the first seed, receiver by receiver", write_method_values, has_cells},
-      {"slopes.csv", "how the error falls with the work, with confidence intervals", write_slopes, has_cells},
-      {"receivers.csv", "one row per receiver: visibility of the source, and the error of each method", write_fields,
-       has_fields},
-      {"profile.csv", "the radiosity along a line, exact and by other methods", write_profile, has_profile},
-      {"method_timings.csv", "one row per method and setting: seconds per receiver", write_method_timings, has_cells},
+       summary_timing_table, has_settings},
+      {"methods.csv", "one row per method and setting at chosen receivers: work and errors in radiosity over the seeds",
+       method_table, has_cells},
+      {"method_seeds.csv", "the same for every seed", seed_table, has_cells},
+      {"method_values.csv", "the values of the first seed, receiver by receiver", method_value_table, has_cells},
+      {"slopes.csv", "how the error falls with the work: error = c * work^exponent, with 95 % confidence intervals",
+       slope_table, has_cells},
+      {"receivers.csv", "one row per receiver: what it sees, and the radiosity error of each method's middle setting",
+       receiver_table, has_fields},
+      {"profile.csv", "the radiosity along a line, largest channel, exact and by other methods", profile_table,
+       has_profile},
+      {"method_timings.csv", "one row per method and setting: seconds per receiver and all sources, one thread at work",
+       method_timing_table, has_cells},
   };
   return kTables;
 }

@@ -1,10 +1,9 @@
-#include "report/verdicts.h"
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
 #include "kernel/float_environment.h"
+#include "report/report.h"
 #include "study/settings.h"
 #include "study/statistics.h"
 #include "text/phrases.h"
@@ -16,36 +15,16 @@ const Ladder& ladder_of(const Study& study, const MethodCell& cell) { return stu
 
 bool is_timed(const MethodCell& cell) { return !std::isnan(cell.seconds); }
 
-// What R. Mitchell's and the classical results predict for the RMS error against the number of samples.
-struct Expectation {
-  double exponent = 0.0;
-  const char* words = "";
-};
-
-std::optional<Expectation> expectation(const Ladder& ladder, Sight sight) {
+// What R. Mitchell's and the classical results predict for the RMS error against the number of samples; else empty.
+std::string expectation(const Ladder& ladder, Sight sight) {
   const methods::Choice& choice = ladder.rungs.front();
-  if (choice.method->name != "area-sampling") return std::nullopt;
-  const std::string& pattern = choice.settings.word("pattern");
-  if (pattern == "random") return Expectation{-0.5, "−1/2"};
-  if (sight == Sight::kPartly) return Expectation{-0.75, "−3/4 with one shadow edge across the source"};
-  return Expectation{-1.0, "−1 where nothing is discontinuous"};
+  if (choice.method->name != "area-sampling") return {};
+  if (choice.settings.word("pattern") == "random") return "−1/2";
+  return sight == Sight::kPartly ? "−3/4 with one shadow edge across the source" : "−1 where nothing is discontinuous";
 }
 
 std::string signed_text(double value) {
   return (value < 0.0 ? "−" : "") + text::rounded(std::abs(value), std::abs(value) < 0.1 ? 1 : 2);
-}
-
-const char* why_shallower(Sight sight) {
-  return sight == Sight::kPartly
-             ? "a cell of the source contains several shadow edges until the cells are finer than the gaps, so that "
-               "samples are no better than random"
-             : "the first settings are too coarse to show the slope that theory predicts in the limit";
-}
-
-const char* why_steeper(Sight sight) {
-  return sight == Sight::kPartly
-             ? "the smooth part of the integrand, whose error falls faster, still outweighs the edges"
-             : "the sequence exploits the smoothness of the integrand better than one sample per cell does";
 }
 
 // The eligible cell with the least key; null if there is none.
@@ -426,16 +405,8 @@ std::vector<std::string> range_sentences(const Study& study) {
 }
 
 SlopeWords slope_words(const Slope& slope, const Ladder& ladder, Sight sight) {
-  SlopeWords words{signed_text(slope.exponent), {}, {}};
+  SlopeWords words{signed_text(slope.exponent), expectation(ladder, sight)};
   if (slope.seeds > 1) words.fitted += " (" + signed_text(slope.low) + " to " + signed_text(slope.high) + ")";
-  const auto expected = expectation(ladder, sight);
-  if (!expected) return words;
-  constexpr double kClose = 0.1;
-  const double off = slope.exponent - expected->exponent;
-  words.theory = expected->words;
-  if (std::abs(off) <= std::max(kClose, 0.5 * (slope.high - slope.low))) return words;
-  words.reason = off > 0.0 ? "shallower, because " + std::string(why_shallower(sight))
-                           : "steeper, because " + std::string(why_steeper(sight));
   return words;
 }
 

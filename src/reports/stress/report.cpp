@@ -12,7 +12,7 @@
 #include "page/output_folder.h"
 #include "page/page_text.h"
 #include "stress/stress.h"
-#include "table/csv.h"
+#include "table/rows.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 
@@ -25,7 +25,11 @@ using page::HtmlTable;
 using page::paragraph;
 using page::Points;
 using page::Series;
-using table::CsvLine;
+using table::keys;
+using table::numbers;
+using table::Rows;
+using table::Table;
+using table::texts;
 using text::counted;
 using text::counted_of;
 using text::html;
@@ -34,75 +38,93 @@ using enum HtmlTable::CellKind;
 // --- tables ---
 
 constexpr int kPrintedDigits = 30;
+constexpr std::optional<double> kNone;
 
-void write_head(const Report& report, std::ostream& out, std::string_view what) {
-  out << "# " << text::program_version() << " stress: " << what << '\n';
-  if (!report.unfinished.empty()) {
-    out << "# incomplete: the run was interrupted; not finished: " << text::enumerate(report.unfinished) << '\n';
+table::Columns stiffness() { return keys("stiffness", table::Type::kNumber); }
+
+table::Head head_of(const Report& report, std::string_view what) {
+  table::Head head;
+  head.set("about", std::string(what));
+  if (!report.unfinished.empty()) head.set("unfinished", report.unfinished);
+  return head;
+}
+
+void set_tampieri(table::Head& head) {
+  head.set("tampieri", "eps_B " + text::shortest(kToleranceShare) + " of the unoccluded form factor, " +
+                           std::to_string(kRays) + " jittered rays, seed 1");
+}
+
+Table value_table(const Report& report) {
+  table::Head head = head_of(report, "every family, stiffness and method");
+  head.set("error",
+           std::string("|value - truth| / truth; where the truth is 0, |value| over the unoccluded form factor; "
+                       "0 below truth_is_good_to; no value where the method refuses the scene"));
+  head.set("truth_is_good_to", kTruthIsGoodTo);
+  set_tampieri(head);
+  table::Columns answers;
+  for (const Method method : kMethods) {
+    const auto strength = method == Method::kExact ? table::Strength::kCertified : table::Strength::kEstimated;
+    const std::string name(short_name_of(method));
+    answers.push_back({name + "_value", table::Type::kNumber, "", strength});
+    answers.push_back({name + "_error", table::Type::kNumber, "", table::Strength::kEstimated});
   }
-}
-
-void write_settings(std::ostream& out) {
-  out << "# tampieri: eps_B " << text::shortest(kToleranceShare) << " of the unoccluded form factor, " << kRays
-      << " jittered rays, seed 1\n";
-}
-
-void write_values(const Report& report, std::ostream& out) {
-  write_head(report, out, "every family, stiffness and method");
-  out << "# error: |value - truth| / truth; where the truth is 0, |value| over the unoccluded form factor\n"
-         "# errors below "
-      << text::shortest(kTruthIsGoodTo) << ", which is as far as the truth is known, are written 0\n";
-  write_settings(out);
-  out << "family,stiffness,truth,evidence,agrees,status,precision_bits,occluders,edges";
-  for (Method method : kMethods) out << ',' << short_name_of(method) << "_value," << short_name_of(method) << "_error";
-  out << '\n';
+  Rows rows("stress values", std::move(head),
+            {keys("family"), stiffness(), texts("truth,evidence"), table::flags("agrees"),
+             texts("status", table::Strength::kProved), table::counts("precision_bits,occluders,edges"), answers,
+             texts("refused_by")});
   for (const FamilyResult& family : report.families) {
     for (const Row& r : family.rows) {
-      CsvLine row(out);
-      row << family.family.name << r.stiffness << r.truth.decimals(kPrintedDigits).value_or(r.truth.midpoint())
-          << to_string(family.family.evidence) << (r.agrees ? "yes" : "no") << exactff::to_string(r.status)
-          << r.precision_bits << r.occluders << r.edges;
-      for (Method method : kMethods) {
+      rows << family.family.name << r.stiffness << r.truth.decimals(kPrintedDigits).value_or(r.truth.midpoint())
+           << to_string(family.family.evidence) << r.agrees << exactff::to_string(r.status) << r.precision_bits
+           << r.occluders << r.edges;
+      std::string refused_by;
+      for (const Method method : kMethods) {
         const Answer& answer = r.of(method);
         if (answer.refused) {
-          row << "refused"
-              << "";
+          refused_by += (refused_by.empty() ? "" : " ") + std::string(short_name_of(method));
+          rows << kNone << kNone;
         } else {
-          row << answer.value << answer.error;
+          rows << answer.value << answer.error;
         }
       }
+      rows << refused_by;
     }
   }
+  return rows.take();
 }
 
-void write_summary(const Report& report, std::ostream& out) {
-  write_head(report, out,
-             "the largest stiffness up to which each method's error stays below each threshold; 0: not even once");
-  out << "# stiffnesses are tried in steps (see values.csv); each number is the last one tried\n";
-  write_settings(out);
-  out << "family,method,threshold,usable_up_to,largest_tried\n";
+Table summary_table(const Report& report) {
+  table::Head head =
+      head_of(report,
+              "the largest stiffness up to which each method's error stays below each threshold; 0: not even once; "
+              "stiffnesses are tried in steps (see values.csv); each number is the last one tried");
+  set_tampieri(head);
+  Rows rows("stress summary", std::move(head),
+            {keys("family,method"), keys("threshold", table::Type::kNumber),
+             numbers("usable_up_to,largest_tried", table::Strength::kEstimated)});
   for (const FamilyResult& family : report.families) {
-    for (Method method : kMethods) {
-      for (double threshold : kThresholds) {
-        CsvLine(out) << family.family.name << short_name_of(method) << threshold
-                     << usable_up_to(family, method, threshold) << family.rows.back().stiffness;
+    for (const Method method : kMethods) {
+      for (const double threshold : kThresholds) {
+        rows << family.family.name << short_name_of(method) << threshold << usable_up_to(family, method, threshold)
+             << family.rows.back().stiffness;
       }
     }
   }
+  return rows.take();
 }
 
-void write_timings(const Report& report, std::ostream& out) {
-  write_head(report, out, "median seconds of one call, preprocessing apart");
-  out << "family,stiffness";
-  for (Method method : kMethods) out << ',' << short_name_of(method) << "_seconds";
-  out << '\n';
+Table timing_table(const Report& report) {
+  std::string names;
+  for (const Method method : kMethods) names += std::string(short_name_of(method)) + "_seconds,";
+  Rows rows("stress timings", head_of(report, "median seconds of one call, preprocessing apart"),
+            {keys("family"), stiffness(), numbers(names, table::Strength::kEstimated, "s")});
   for (const FamilyResult& family : report.families) {
     for (const Row& r : family.rows) {
-      CsvLine row(out);
-      row << family.family.name << r.stiffness;
-      for (Method method : kMethods) row << r.of(method).seconds;
+      rows << family.family.name << r.stiffness;
+      for (const Method method : kMethods) rows << r.of(method).seconds;
     }
   }
+  return rows.take();
 }
 
 // --- headlines ---
@@ -360,7 +382,8 @@ class PageWriter {
   void how_to_read() {
     text_ += heading("The families");
     text_ += paragraph(
-        "Each family opens to its figures and values. Stiffness grows in steps, above 10<sup>16</sup> in steps of "
+        "Each family opens to its figures; values.csv has every value. Stiffness grows in steps, above 10<sup>16</sup> "
+        "in steps of "
         "twenty decades; families end before F leaves the range of normal doubles. Eq. (4) in double gets the exact "
         "visible region, so difficulties in finding the region do not affect it.");
     text_ += paragraph(
@@ -380,7 +403,7 @@ class PageWriter {
     if (const int bits = result.rows.front().precision_bits; bits > 0 && !precision_changes(result)) {
       content += paragraph("The proof needed " + std::to_string(bits) + " bits in every scene.");
     }
-    content += page::fold("Every value", values_table(result) + '\n') + "</div>\n";
+    content += "</div>\n";
     const bool agrees = std::ranges::all_of(result.rows, &Row::agrees);
     text_ += page::fold(html(family.title) + (agrees ? "" : ": <b>disagrees with the truth</b>"), content);
   }
@@ -392,22 +415,6 @@ class PageWriter {
       group += "<figure id=\"" + figure.id + "\">\n<h3>" + html(figure.title) + "</h3>\n" + svg + "\n</figure>\n";
     }
     return group.empty() ? group : "<div class=\"figures maps\">\n" + group + "</div>\n";
-  }
-
-  static std::string values_table(const FamilyResult& result) {
-    HtmlTable table(HtmlTable::Shape::kWide);
-    table.columns({"stiffness", "form factor", "status", "exact, bits", "edges", "exact, time"});
-    for (Method method : kMethods) table.column("error, " + html(short_name_of(method)));
-    for (const Row& row : result.rows) {
-      const Answer& exact = row.of(Method::kExact);
-      table.row();
-      table.cells({stiffness_text(row.stiffness), text::shortest(exact.value),
-                   row.agrees ? html(exactff::to_string(row.status)) : "<b>disagrees with the truth</b>",
-                   std::to_string(row.precision_bits), std::to_string(row.edges),
-                   page::prose(text::duration(exact.seconds))});
-      for (Method method : kMethods) table.cell(error_text(row.of(method)));
-    }
-    return table.text();
   }
 
   void define(const char* term, const char* meaning) {
@@ -470,7 +477,7 @@ class PageWriter {
 
 void write_tables(const Report& report, const std::filesystem::path& folder) {
   for (const StressTable& table : tables()) {
-    files::write_file(folder / table.file, [&](std::ostream& out) { table.write(report, out); });
+    table::write(table.make(report), folder / table.file);
   }
 }
 
@@ -482,9 +489,9 @@ void write_page(const Report& report, const page::DrawnFigures& drawn, const std
 
 const std::array<StressTable, 3>& tables() {
   static const std::array<StressTable, 3> list = {
-      {{"summary.csv", "the stiffness up to which each method stays below each error", write_summary},
-       {"values.csv", "every value and error, the truth to 30 digits, the bits needed", write_values},
-       {"timings.csv", "times of single calls", write_timings}}};
+      {{"summary.csv", "the stiffness up to which each method stays below each error", summary_table},
+       {"values.csv", "every value and error, the truth to 30 digits, the bits needed", value_table},
+       {"timings.csv", "times of single calls", timing_table}}};
   return list;
 }
 

@@ -21,7 +21,6 @@
 #include "kernel/ball.h"
 #include "kernel/float_environment.h"
 #include "stress/families.h"
-#include "stress/formulas.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 

@@ -9,7 +9,6 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
-#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "exactff/enclosure.h"
 #include "exactff/exact.h"
 #include "exactff/progress.h"
+#include "exactff/table.h"
 #include "page/chapter.h"
 
 namespace exactff::stress {
@@ -154,7 +154,7 @@ void write_part(const Report& report, const std::filesystem::path& folder);
 struct StressTable {
   std::string_view file;
   std::string_view holds;  // for the report's list of files
-  void (*write)(const Report& report, std::ostream& out);
+  table::Table (*make)(const Report& report);
 };
 // The CSV files, in the order of the report's list. Only timings.csv holds times.
 [[nodiscard]] const std::array<StressTable, 3>& tables();

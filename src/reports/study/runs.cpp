@@ -18,7 +18,6 @@
 #include "kernel/expect.h"
 #include "methods/adaptive.h"
 #include "study/sight.h"
-#include "study/silent_errors.h"
 #include "study/statistics.h"
 #include "text/escape.h"
 #include "text/phrases.h"

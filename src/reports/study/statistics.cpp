@@ -52,13 +52,12 @@ ErrorStatistics error_statistics(std::span<const double> errors) {
   std::vector<double> numbers;
   std::ranges::copy_if(errors, std::back_inserter(numbers), [](double v) { return std::isfinite(v); });
   result.not_a_number = errors.size() - numbers.size();
-  if (numbers.empty()) return result;
-  std::vector<double> magnitudes = numbers;
-  for (double& m : magnitudes) m = std::abs(m);
-  result.worst = *std::max_element(magnitudes.begin(), magnitudes.end());
-  result.rms = kernel::root_mean_square(numbers, result.worst);
   result.mean = kernel::mean(numbers);
-  result.p99 = kernel::percentile(std::move(magnitudes), 99.0);
+  for (double& number : numbers) number = std::abs(number);
+  const kernel::Distribution magnitudes = kernel::distribution(std::move(numbers));
+  result.rms = magnitudes.rms;
+  result.p99 = magnitudes.p99;
+  result.worst = magnitudes.max;
   return result;
 }
 

@@ -11,14 +11,10 @@
 #include "exactff/adaptive.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <limits>
-#include <optional>
 #include <span>
-#include <string>
 
-#include "adaptive/patch_visibility.h"
 #include "adaptive/sampled_scene.h"
 #include "adaptive/sub_patch.h"
 #include "kernel/float_environment.h"

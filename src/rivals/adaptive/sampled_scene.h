@@ -14,7 +14,6 @@
 #include <span>
 #include <vector>
 
-#include "adaptive/sample_points.h"
 #include "adaptive/shaft.h"
 #include "adaptive/sub_patch.h"
 #include "exactff/adaptive.h"
@@ -23,9 +22,7 @@
 #include "receivers/own_pieces.h"
 #include "scene/shaft_tree.h"
 
-// --- Ray scene ---
-
-// The scene in the form that Embree takes: single precision, in the unit box.
+// --- The scene in the form that Embree takes: single precision, in the unit box ---
 
 // Embree's types (adaptive/embree.h)
 struct RTCDeviceTy;

@@ -20,7 +20,6 @@
 #include <span>
 #include <vector>
 
-#include "adaptive/sample_points.h"
 #include "adaptive/sub_patch.h"
 
 namespace exactff::adaptive {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "adaptive/patch_visibility.h"
+#include "adaptive/sub_patch.h"
 #include "exactff/adaptive.h"
 #include "exactff/methods.h"
 

@@ -4,10 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
 
-#include "adaptive/sample_points.h"
 #include "adaptive/sub_patch.h"
 
 namespace exactff::methods {
@@ -43,9 +41,7 @@ class SolidAnglePart {
 // Appends the parts of a convex polygon, with corners relative to x: the rectangle that it is, or else triangles.
 void add_solid_angle_parts(std::span<const Vec3> polygon, double height, std::vector<SolidAnglePart>& parts);
 
-// --- Unit points ---
-
-// Point sets of the unit square for area sampling.
+// --- Point sets of the unit square for area sampling ---
 
 enum class PointSet {
   kRandom,      // independent

@@ -14,7 +14,6 @@
 // it may differ by rounding errors.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
+#include <string_view>
 
 #include "exactff/adaptive.h"
 #include "exactff/methods.h"
@@ -11,9 +12,14 @@
 
 namespace exactff::methods {
 
-#define EXACTFF_METHOD(name) Method name##_method();
-#include "methods/list.h"
-#undef EXACTFF_METHOD
+// The library's methods (registry.cpp lists them).
+[[nodiscard]] Method exact_method();
+[[nodiscard]] Method adaptive_method();
+[[nodiscard]] Method adaptive_exact_visibility_method();
+[[nodiscard]] Method hemicube_method();
+[[nodiscard]] Method nettle_method();
+[[nodiscard]] Method wallace_method();
+[[nodiscard]] Method area_sampling_method();
 
 // Upper limits for a single setting, so that a typing error is reported at once and does not cost a long wait.
 inline constexpr std::int64_t kMostSplits = 4096;

@@ -6,10 +6,8 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "adaptive/sample_points.h"
 #include "adaptive/sampled_scene.h"
 #include "adaptive/sub_patch.h"
 #include "exactff/methods.h"

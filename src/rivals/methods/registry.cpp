@@ -3,12 +3,12 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "exactff/exact.h"
 #include "methods/adaptive.h"
 #include "methods/method_files.h"
 #include "text/settings.h"
 
 namespace exactff::methods {
-
 namespace {
 
 bool is_name(std::string_view name) {
@@ -95,9 +95,11 @@ class Registry {
 
  private:
   Registry() {
-#define EXACTFF_METHOD(name) methods_.push_back(with_buried_receivers(name##_method()));
-#include "methods/list.h"
-#undef EXACTFF_METHOD
+    // In the order in which they are listed.
+    for (const auto make : {exact_method, adaptive_method, adaptive_exact_visibility_method, hemicube_method,
+                            nettle_method, wallace_method, area_sampling_method}) {
+      methods_.push_back(with_buried_receivers(make()));
+    }
   }
 
   const Method* find(std::string_view name) const {
@@ -183,6 +185,74 @@ void Evaluator::form_factors(std::span<const PreparedSource* const> sources, std
 
 std::unique_ptr<PreparedSource> PreparedScene::prepare_source(const Selection& selection) const {
   return std::make_unique<PreparedSource>(selection);
+}
+
+// --- The exact method, as one of the methods: correctly rounded values ---
+
+namespace {
+
+Engine engine_named(std::string_view name) {
+  return name == "edges" ? Engine::kEdges : name == "boolean" ? Engine::kBoolean : Engine::kBoth;
+}
+
+// Nothing is prepared for the whole scene.
+struct Nothing {
+  explicit Nothing(const Scene& /*scene*/) {}
+};
+
+struct ExactSourcePrepared : PreparedSource {
+  ExactSourcePrepared(const Nothing& /*data*/, const Scene& scene, const Selection& chosen)
+      : PreparedSource(chosen), source(scene, chosen) {}
+  ExactSource source;
+};
+
+class Exact : public Evaluator {
+ public:
+  Exact(const Nothing& /*data*/, const Scene& scene, const Settings& settings)
+      : scene_(scene), options_{.engine = engine_named(settings.word("engine")), .from_scratch = true} {}
+
+  void look_from(const Receiver& receiver) override { receiver_ = receiver; }
+
+  using Evaluator::form_factor;
+  Estimate form_factor(const PreparedSource& source) override {
+    const auto& prepared = own<ExactSourcePrepared>(source);
+    exact_form_factor(scene_, receiver_, prepared.source, options_, found_, workspace_);
+    Estimate result;
+    result.form_factor = found_.value;
+    std::uint64_t occluders = 0, edges = 0;
+    for (const PlaneRecord& plane : found_.planes) {
+      occluders += plane.candidates;
+      edges += plane.edges;
+    }
+    result.counters.add("occluders", occluders);
+    result.counters.add("edges", edges);
+    result.counters.add("bits", static_cast<std::uint64_t>(found_.precision_bits));
+    result.counters.add("not certified", found_.status == Status::kNotCertified ? 1 : 0);
+    return result;
+  }
+
+ private:
+  const Scene& scene_;
+  ExactOptions options_;
+  Receiver receiver_;
+  FormFactor found_;  // its memory is reused
+  Workspace workspace_;
+};
+
+// All engines give the same bits.
+bool exact_uses(const Settings&, std::string_view setting) { return setting != "engine"; }
+
+}  // namespace
+
+Method exact_method() {
+  return {
+      .name = "exact",
+      .summary = "the exact visible region and Tampieri's Eq. (4) over its boundary, proved to be correctly rounded",
+      .source = "",
+      .settings = {word_setting("engine", {"edges", "boolean", "both"},
+                                "how the visible region is found; it does not affect the values")},
+      .prepare = prepare_as<OnScene<Nothing, ExactSourcePrepared, Exact>>,
+      .uses = exact_uses};
 }
 
 }  // namespace exactff::methods

@@ -32,7 +32,7 @@
 #include "exactff/view_factors.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
-#include "report/verdicts.h"
+#include "report/report.h"
 #include "stress/stress.h"
 #include "support/program.h"
 #include "support/random_scenes.h"

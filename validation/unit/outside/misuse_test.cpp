@@ -207,7 +207,7 @@ TEST(Misuse, SourcesPreparedByAnotherMethodAreRefused) {
 
 // The requirements of internal functions, which every build with tests checks.
 TEST(Misuse, BrokenRequirementsNameTheirPlace) {
-  const std::string words = words_of<std::logic_error>([] { (void)kernel::percentile({}, 50.0); });
+  const std::string words = words_of<std::logic_error>([] { (void)kernel::nearest_rank({}, 2.0); });
   EXPECT_NE(words.find("statistics.cpp:"), std::string::npos) << words;
 }
 

@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.h"
-#include "cli/option_table.h"
+#include "cli/commands.h"
 #include "support/complaint.h"
 #include "support/program.h"
 

@@ -10,8 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/command.h"
-#include "cli/option_table.h"
+#include "cli/commands.h"
 #include "support/folder.h"
 #include "support/program.h"
 

@@ -98,7 +98,7 @@ TEST_F(ViewCommand, CsvHasSharesAndFormFactors) {
       << text;
   EXPECT_NE(text.find(",certified,0.31466995351879845,no\n"), std::string::npos) << text;
   EXPECT_NE(text.find("\ntwin,0,0,0,zero,0.31466995351879845,yes\n"), std::string::npos) << text;
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 7);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 6);
 }
 
 TEST_F(ViewCommand, SaysWhatIsWrong) {

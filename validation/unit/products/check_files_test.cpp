@@ -16,6 +16,7 @@
 #include "exactff/check.h"
 #include "exactff/table.h"
 #include "support/complaint.h"
+#include "table/rows.h"
 #include "text/phrases.h"
 #include "unit/products/check_support.h"
 
@@ -329,6 +330,20 @@ TEST_F(CheckOfTables, AScoreboardHasARowForEachProgram) {
   std::filesystem::create_directory(directory_.path() / "other");
   (void)directory_.write("other/mine.txt", "keep");
   EXPECT_HOLDS(complaint([&] { check::write(board, directory_.path() / "other"); }), "which exactff did not write");
+}
+
+// A table of a study names receivers; it is no matrix, whose candidates may be nothing but numbers.
+TEST_F(CheckOfTables, ValuesOfAStudyAreMatchedByReceiver) {
+  table::Rows rows("compare exact", {},
+                   {table::keys("receiver,source"), table::numbers("exact", table::Strength::kCertified)});
+  rows << "a"
+       << "light" << 0.5 << "b"
+       << "light" << 0.25;
+  const auto truth = directory_.path() / "exact.csv";
+  table::write(rows.take(), truth);
+  const Report report = compare(truth, directory_.write("mine.csv", "receiver,value\nb,0.5\na,0.5\n"));
+  EXPECT_EQ(report.overall.absolute.max, 0.25);
+  EXPECT_EQ(report.overall.rows, 2U);
 }
 
 TEST_F(CheckOfTables, AScoreboardTellsTheProblemsOfAllCandidates) {

@@ -12,7 +12,6 @@
 #include "generate/plain_scene.h"
 #include "support/program.h"
 #include "support/random_scenes.h"
-#include "vtk/cells.h"
 
 namespace exactff::vtk {
 namespace {

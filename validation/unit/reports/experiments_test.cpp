@@ -30,12 +30,6 @@ TEST(Experiments, AreFoundByNameAndNearlyByAnother) {
   }
 }
 
-TEST(Experiments, WriteSlopesWithTwoDecimals) {
-  EXPECT_EQ(slope_text(0.996), "1.00");
-  EXPECT_EQ(slope_text(-0.756), "−0.76");
-  EXPECT_EQ(slope_text(-0.001), "0.00");
-}
-
 // A floor and a wall that meet, and a lamp above the floor.
 MeshingScene corner() {
   SceneBuilder builder;
@@ -95,25 +89,6 @@ TEST(Experiments, GiveUpWhenCancelled) {
 
 // --- Karkanis' two plots -------------------------------------------------------------------------------
 
-TEST(HemicubeScatter, CountsTheTrianglesThatTheHemicubeMisses) {
-  const ScatterSize size{.scenes = 2, .triangles = 100, .resolutions = {20, 100}};
-  const std::vector<ScatterPoint> points = scatter_points(size, 1, kNoHooks);
-  ASSERT_EQ(points.size(), 200U);
-  for (std::size_t r = 0; r < 2; ++r) {
-    std::size_t visible = 0, missed = 0;
-    for (const ScatterPoint& p : points) {
-      visible += p.exact > 0.0 ? 1U : 0U;
-      missed += p.exact > 0.0 && p.hemicube[r] == 0.0 ? 1U : 0U;
-    }
-    for (const ScatterDecade& d : scatter_decades(points, r)) {
-      visible -= d.visible;
-      missed -= d.missed;
-    }
-    EXPECT_EQ(visible, 0U);
-    EXPECT_EQ(missed, 0U);
-  }
-}
-
 TEST(HemicubeScatter, AFinerHemicubeMissesFewerAndErrsLess) {
   const ScatterSize size{.scenes = 2, .triangles = 100, .resolutions = {20, 200}};
   const std::vector<ScatterPoint> points = scatter_points(size, 1, kNoHooks);
@@ -122,17 +97,14 @@ TEST(HemicubeScatter, AFinerHemicubeMissesFewerAndErrsLess) {
   };
   EXPECT_GT(missed(0), 10);
   EXPECT_LT(missed(1), missed(0) / 2);
-  const std::vector<ScatterDecade> coarse = scatter_decades(points, 0), fine = scatter_decades(points, 1);
-  EXPECT_LT(fine.back().median, 0.2 * coarse.back().median);
-}
-
-TEST(HemicubeScatter, TheErrorFallsAsTheFormFactorGrows) {
-  const ScatterSize size{.scenes = 3, .triangles = 150, .resolutions = {100}};
-  const std::vector<double> slopes = scatter_slopes(scatter_points(size, 1, kNoHooks), size, 0);
-  ASSERT_EQ(slopes.size(), 3U);
-  const double slope = kernel::mean(slopes);
-  EXPECT_LT(slope, -0.4);
-  EXPECT_GT(slope, -1.1);
+  const auto error = [&](std::size_t r) {
+    std::vector<double> errors;
+    for (const ScatterPoint& p : points) {
+      if (p.exact > 1e-3) errors.push_back(std::abs(p.hemicube[r] - p.exact) / p.exact);
+    }
+    return kernel::median(errors);
+  };
+  EXPECT_LT(error(1), 0.2 * error(0));
 }
 
 TEST(HemicubeScatter, DrawsWhatIsMissedApart) {
@@ -161,7 +133,6 @@ TEST(KarkanisTimes, TheShaftSavesPairsAndChangesNoBit) {
 TEST(KarkanisTimes, NamesWhatTheBudgetLeavesOut) {
   TimesSize size{.triangles = {10, 20, 40}};
   size.budget = 0.0;
-  size.rays = 4;
   const Result result = karkanis_times(size, kNoHooks);
   ASSERT_EQ(result.left_out.size(), 1U);
   EXPECT_NE(result.left_out[0].what.find("20 and 40"), std::string::npos) << result.left_out[0].what;

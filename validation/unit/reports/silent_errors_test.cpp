@@ -1,12 +1,11 @@
 // Leaves of the adaptive algorithm whose rays miss that a source is seen in part.
-#include "study/silent_errors.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "study/sight.h"
 #include "unit/reports/study_support.h"
 
 namespace exactff::study {

@@ -12,7 +12,6 @@
 
 #include "exactff/study.h"
 #include "report/report.h"
-#include "report/verdicts.h"
 #include "study/settings.h"
 #include "study/sight.h"
 #include "study/statistics.h"

@@ -53,12 +53,12 @@ TEST(Statistics, ErrorsNearTheLargestDoubleDoNotOverflow) {
 TEST(Statistics, PercentilesAreOfTheNearestRank) {
   std::vector<double> values;
   for (int i = 100; i >= 1; --i) values.push_back(i);
-  EXPECT_EQ(kernel::percentile(values, 99), 99);
-  EXPECT_EQ(kernel::percentile(values, 100), 100);
-  EXPECT_EQ(kernel::percentile(values, 0.5), 1);
+  EXPECT_EQ(kernel::nearest_rank(values, 0.99), 99);
+  EXPECT_EQ(kernel::nearest_rank(values, 1), 100);
+  EXPECT_EQ(kernel::nearest_rank(values, 0.005), 1);
   values.push_back(101);
-  EXPECT_EQ(kernel::percentile(values, 99), 100);  // ceil(99.99)
-  EXPECT_EQ(kernel::percentile({7}, 99), 7);
+  EXPECT_EQ(kernel::nearest_rank(values, 0.99), 100);  // ceil(99.99)
+  EXPECT_EQ(kernel::nearest_rank({7}, 0.99), 7);
 }
 
 TEST(Statistics, TheMedianOfAnEvenCountIsTheMeanOfTheMiddleTwo) {

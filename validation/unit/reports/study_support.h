@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -82,10 +81,8 @@ inline std::string left_out_text(const std::vector<LeftOut>& left_out) {
   return text;
 }
 
-inline std::string text_of(const report::StudyTable& table, const study::Study& study) {
-  std::ostringstream out;
-  table.write(study, out);
-  return out.str();
+inline std::string text_of(const report::StudyTable& one, const study::Study& study) {
+  return table::csv_text(one.make(study));
 }
 
 // By file: the tables that hold values.

@@ -12,6 +12,7 @@
 
 #include "report/report.h"
 #include "study/statistics.h"
+#include "support/program.h"
 #include "unit/reports/study_support.h"
 
 namespace exactff::study {
@@ -38,6 +39,18 @@ TEST(Study, OfAllMethodsHasAllTables) {
     EXPECT_TRUE(files.insert(table.file).second) << table.file;
   }
   EXPECT_EQ(value_tables(whole_study()).size(), 9U);
+}
+
+TEST(Study, TablesReadBackToTheSameBytes) {
+  const validation::TemporaryDirectory directory;
+  for (const report::StudyTable& one : report::tables()) {
+    const table::Table made = one.make(whole_study());
+    for (const char* extension : {".csv", ".npz", ".jsonl"}) {
+      const auto file = directory.path() / (std::string(one.file) + extension);
+      table::write(made, file);
+      EXPECT_EQ(table::csv_text(table::read(file)), table::csv_text(made)) << file;
+    }
+  }
 }
 
 TEST(Study, ErrorsAreApproximateMinusExact) {

@@ -9,7 +9,6 @@
 
 #include "exactff/study.h"
 #include "report/report.h"
-#include "report/verdicts.h"
 #include "study/settings.h"
 
 namespace exactff::study {
@@ -158,22 +157,20 @@ TEST_F(Verdicts, OfADarkSceneSaySo) {
   EXPECT_NE(report::verdict(study_).find("every form factor of this scene is 0"), std::string::npos);
 }
 
-TEST(SlopeWords, SayWhetherTheoryAgrees) {
+TEST(SlopeWords, SayWhatTheoryExpects) {
   const Ladder random = parse_ladder("area-sampling:pattern=random,samples=4|16");
   const Ladder stratified = parse_ladder("area-sampling:pattern=stratified,samples=4|16");
   const Ladder hemicube = parse_ladder("hemicube:resolution=8|16");
   const auto words = [](const Slope& slope, const Ladder& ladder, Sight sight) {
     const report::SlopeWords said = report::slope_words(slope, ladder, sight);
-    return said.fitted + " | " + said.theory + " | " + said.reason;
+    return said.fitted + " | " + said.theory;
   };
-  EXPECT_EQ(words({-0.51, -0.53, -0.49, 30, 5}, random, Sight::kPartly), "−0.51 (−0.53 to −0.49) | −1/2 | ");
+  EXPECT_EQ(words({-0.51, -0.53, -0.49, 30, 5}, random, Sight::kPartly), "−0.51 (−0.53 to −0.49) | −1/2");
   EXPECT_EQ(words({-0.75, -0.8, -0.7, 30, 5}, stratified, Sight::kPartly),
-            "−0.75 (−0.8 to −0.7) | −3/4 with one shadow edge across the source | ");
-  EXPECT_EQ(words({-1.0, -1.0, -1.0, 1, 5}, hemicube, Sight::kVisible), "−1 |  | ");
-  const std::string shallow = words({-0.55, -0.56, -0.54, 30, 5}, stratified, Sight::kPartly);
-  EXPECT_NE(shallow.find(" | shallower, because "), std::string::npos) << shallow;
-  const std::string steep = words({-1.3, -1.31, -1.29, 30, 5}, stratified, Sight::kVisible);
-  EXPECT_NE(steep.find("−1 where nothing is discontinuous | steeper, because "), std::string::npos) << steep;
+            "−0.75 (−0.8 to −0.7) | −3/4 with one shadow edge across the source");
+  EXPECT_EQ(words({-1.0, -1.0, -1.0, 1, 5}, hemicube, Sight::kVisible), "−1 | ");
+  EXPECT_EQ(words({-1.3, -1.31, -1.29, 30, 5}, stratified, Sight::kVisible),
+            "−1.3 (−1.3 to −1.3) | −1 where nothing is discontinuous");
 }
 
 }  // namespace

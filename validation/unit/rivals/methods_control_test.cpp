@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "adaptive/sample_points.h"
+#include "adaptive/sub_patch.h"
 #include "exact/source_planes.h"
 #include "exact/visible_share.h"
 #include "unit/rivals/methods_support.h"

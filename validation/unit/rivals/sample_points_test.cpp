@@ -1,10 +1,9 @@
-#include "adaptive/sample_points.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
+#include "adaptive/sub_patch.h"
 #include "unit/rivals/sampled_rays.h"
 
 namespace exactff::adaptive {

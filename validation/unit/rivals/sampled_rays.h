@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "adaptive/sample_points.h"
 #include "adaptive/sub_patch.h"
 
 namespace exactff::adaptive {

@@ -1,7 +1,6 @@
 // An image of another program: an OpenEXR file, or a NumPy array of shape (height, width, 3).
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -1,16 +1,54 @@
-// CLI11's description of the program as plain tables. The help, the completion and the words for misused flags are
-// generated from these tables, so that they always agree with the options that are parsed.
+// The commands of the program. Each file parses its own flags, calls the library and prints; no mathematics.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "flags/file_options.h"
+#include "flags/values.h"
 
 namespace exactff::cli {
+
+// Registers the command with `app` and returns the function that runs it. That function returns the exit code: 0 done,
+// 1 a check failed, 2 bad input (by InputError), 3 not as accurate or certified as asked, 4 internal.
+struct Command {
+  CLI::App* app = nullptr;
+  std::function<int()> run;
+};
+
+Command add_info(CLI::App& app);
+Command add_point(CLI::App& app);
+Command add_view(CLI::App& app);
+Command add_matrix(CLI::App& app);
+Command add_radiosity(CLI::App& app);
+Command add_compare(CLI::App& app);
+Command add_truth(CLI::App& app);
+Command add_merge(CLI::App& app);
+Command add_check(CLI::App& app);
+Command add_render(CLI::App& app);
+Command add_stress(CLI::App& app);
+Command add_convert(CLI::App& app);
+Command add_help(CLI::App& app);
+Command add_completion(CLI::App& app);
+
+// All commands, in the order of the help.
+std::vector<Command> add_commands(CLI::App& app);
+
+// For App::formatter: forms the texts of --help from the option tables. Set it before commands are added, because they
+// inherit it.
+[[nodiscard]] std::shared_ptr<CLI::Formatter> help_formatter();
+
+// Throws InputError if there is no such command. `app` must have all commands: main() adds them first.
+void require_command(const CLI::App& app, const std::string& name);
+
+// --- Option table ---
+
+// CLI11's description of the program as plain tables. The help, the completion and the words for misused flags are
+// generated from these tables, so that they always agree with the options that are parsed.
 
 enum class Completion {
   kNothing,
