@@ -81,6 +81,46 @@ struct Reciprocity {
 };
 [[nodiscard]] Reciprocity reciprocity(const Matrix& matrix);
 
+// --- Balanced ------------------------------------------------------------------------------------------------------
+
+// A matrix for programs that need rows that close and reciprocity that holds, so that no energy is made.
+struct Balanced {
+  // As in Matrix: row by row, and for each row. Empty if there is no balanced matrix, or if none was found.
+  std::vector<double> entries, back, open, buried;
+  double furthest = 0.0;  // largest distance of the exact sum of a row from 1
+
+  // Why there is none, by the bounds. Rows as indices.
+  struct Pair {
+    std::size_t row = 0, column = 0;
+  };
+  std::vector<Pair> apart;  // pairs whose two directions have no number in common
+  // Even with all their entries at their upper bounds, rows of `lacking` do not reach their areas; those of `exceeding`
+  // exceed theirs with all entries at their lower bounds; of both together, a sum of rows misses a sum of areas by
+  // `gap`, as a share of the areas of these rows.
+  std::vector<std::size_t> lacking, exceeding;
+  double gap = 0.0;
+  Claim claim = Claim::kZero;  // the weakest one of the bounds that prove it; estimated: a fault is likely, not proved
+
+  [[nodiscard]] bool is_found() const { return !entries.empty(); }
+  [[nodiscard]] bool is_impossible() const { return !apart.empty() || !lacking.empty() || !exceeding.empty(); }
+};
+
+// The matrix nearest to the values in which every entry lies in its interval, and
+//
+// - A_i * F_ij == A_j * F_ji as products of doubles, each rounded once, in every pair (unless they underflow),
+// - the exact sum of the doubles of a row, with back, open and buried, is 1 to within 2^-52, one ulp (`furthest` has
+// the
+//   largest distance; math.fsum of a row nearly always gives 1.0).
+//
+// "Nearest": the sum of squared distances of A_i F_ij over the widths of their intervals is least, up to roundings. An
+// entry whose two intervals overlap only because areas are rounded may miss one by 2^-42 of itself. Depends neither on
+// threads nor on the order of the patches, but on their names, which order the sums. Throws InputError unless rows and
+// columns are the same patches and every row must add up to 1: the message has reasons_against_one().
+[[nodiscard]] Balanced balanced(const Scene& scene, const Matrix& matrix);
+
+// The matrix with these values in place of its own. Requires balanced.is_found().
+[[nodiscard]] Matrix with_values(Matrix matrix, const Balanced& balanced);
+
 // The scene with the backs of these patches or faces as patches of their own, named "NAME (back)": every face has a
 // twin in its place that is turned round and has the same material; a face that is not planar and its twin consist of
 // the same triangles. A face in several selections gets one twin. All patches and faces of `scene` keep their ids.
@@ -101,7 +141,9 @@ inline constexpr std::string_view kBuried = "(buried)";
 
 // A row for each entry: from,to,factor,lower,upper,claim,way,accurate,area_from,area_to,cells,event_cells,limit. The
 // head has the options of the view factors and all else that the entries depend on.
-[[nodiscard]] table::Table table_of(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options);
+// With a balanced matrix, each row also has the column `balanced`.
+[[nodiscard]] table::Table table_of(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options,
+                                    const Balanced* balanced = nullptr);
 
 // A matrix as its table has it: with names instead of patches, otherwise to the same bits.
 struct NamedMatrix {

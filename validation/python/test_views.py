@@ -1,6 +1,7 @@
 """View factors from patch to patch, and the whole view."""
 
 import csv
+import math
 import pickle
 
 import numpy as np
@@ -181,3 +182,23 @@ def test_of_coincident_faces_a_front_is_seen():
 def test_a_view_by_faces():
     seen = exactff.view(ROOM, POINT, UP, on="auto", patches="faces")
     assert all(":" in name or name in ROOM.names for name in seen) and len(seen) > len(exactff.view(ROOM, POINT, UP))
+
+
+def test_a_balanced_matrix_closes_to_the_bit(tmp_path):
+    scene = exactff.Scene.read(L_ROOM)
+    matrix = exactff.view_factor_matrix(scene, accuracy=1e-3, backs=True, sky=True)
+    found = matrix.balanced()
+    power = found.areas_from[:, None] * found.value
+    assert same_bits(power, power.T) and not same_bits(found.value, matrix.value)
+    assert (found.lower <= found.value).all() and (found.value <= found.upper).all()
+    for row, back, free in zip(found.value.tolist(), found.back, found.open):
+        assert abs(math.fsum([*row, back.value, free.value]) - 1.0) <= 2.0**-52
+    assert found["srf-1", "srf-6"].value == found.value[0, 5]
+    found.save(tmp_path / "m.csv")
+    program("matrix", L_ROOM, "--accuracy", "1e-3", "--balance", "-o", tmp_path / "program.csv")
+    assert (tmp_path / "m.csv").read_bytes() == (tmp_path / "program.csv").read_bytes()
+    found.save(tmp_path / "m.npz")
+    with np.load(tmp_path / "m.npz") as file:
+        assert same_bits(file["data"], found.value[found.claim != "zero"])
+    with pytest.raises(exactff.InputError, match="what meets backs is not computed"):
+        exactff.view_factor_matrix(scene, accuracy=1e-1).balanced()

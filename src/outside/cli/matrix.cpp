@@ -21,6 +21,7 @@
 #include "flags/file_options.h"
 #include "flags/scene.h"
 #include "flags/values.h"
+#include "matrix/balanced.h"
 #include "matrix/row_facts.h"
 #include "matrix/row_on_faces.h"
 #include "matrix/team.h"
@@ -50,7 +51,14 @@ constexpr const char* kMatrixFooter =
     "jobs with --shard 1/4, 2/4, ... whose files `exactff merge` joins. With --resume and a complete FILE, also a\n"
     "merged one, the other files are made again. The bytes depend on none of this.\n"
     "View3D's output has six decimals and no bounds; its rows add up to 1 only within that. EnergyPlus reads the\n"
-    "names of patches as names of surfaces. Where fronts of two patches overlap in one plane, such as a window and\n"
+    "names of patches as names of surfaces.\n"
+    "--balance chooses the nearest matrix within all intervals in which A_i F_ij and A_j F_ji are the same double and\n"
+    "every row adds up to 1 within one ulp. If there is none, the exit code is 1 and a warning names the rows or "
+    "pairs\n"
+    "that prove it. -o then has the column 'balanced', and all other files and the table have its values. --matrix "
+    "FILE\n"
+    "takes the entries from a file of `exactff matrix SCENE -o FILE`. Where fronts of two patches overlap in one "
+    "plane, such as a window and\n"
     "its wall, both count in full and rows exceed 1: a warning names them, and neither file is written without\n"
     "--force.\n"
     "\n"
@@ -64,7 +72,8 @@ struct MatrixArguments {
   flags::SceneArguments scene;
   std::vector<std::string> from{"all"}, to{"all"}, two_sided;
   matrix::Options options;
-  bool plain = false;
+  bool plain = false, balance = false;
+  std::string matrix;  // a file
   std::string csv, npz, view3d, energyplus, vtk;
   std::string zone = "Zone 1";
   std::string shard;
@@ -75,7 +84,8 @@ struct MatrixArguments {
   // A pipe or a device has no journal.
   [[nodiscard]] bool keeps_work() const {
     std::error_code ignored;
-    return !csv.empty() && (!std::filesystem::is_other(csv, ignored) || resume || !shard.empty());
+    return !csv.empty() && !balance && matrix.empty() &&
+           (!std::filesystem::is_other(csv, ignored) || resume || !shard.empty());
   }
 };
 
@@ -90,10 +100,12 @@ void for_each_entry(const Scene& scene, const matrix::Matrix& matrix, const Visi
   }
 }
 
-void print_plain(const Scene& scene, const matrix::Matrix& matrix) {
+void print_plain(const Scene& scene, const matrix::Matrix& matrix, bool with_values) {
   for_each_entry(scene, matrix, [&](std::size_t i, const std::string& to, const ViewFactor& f) {
     std::cout << shown_name(scene, matrix.factors.from[i]) << '\t' << to << '\t' << text::shortest(f.lower) << '\t'
-              << text::shortest(f.upper) << '\t' << to_string(f.claim) << '\t' << to_string(f.way) << '\n';
+              << text::shortest(f.upper) << '\t' << to_string(f.claim) << '\t' << to_string(f.way);
+    if (with_values) std::cout << '\t' << text::shortest(f.value);
+    std::cout << '\n';
   });
 }
 
@@ -188,6 +200,13 @@ void check_shard_and_resume(const MatrixArguments& args) {
     text::refuse(std::string(args.resume ? "--resume" : "--shard") + " is given without -o",
                  "finished pairs are kept beside the file of -o", "name a file, for example -o factors.csv");
   }
+  if ((args.balance || !args.matrix.empty()) && (args.resume || !args.shard.empty())) {
+    text::refuse(std::string(args.resume ? "--resume" : "--shard") + " is given with " +
+                     (args.balance ? "--balance" : "--matrix"),
+                 "finished pairs are kept of a matrix as it is computed",
+                 "compute it first by -o FILE, and then give --matrix FILE" +
+                     std::string(args.balance ? " --balance" : " without this flag"));
+  }
   if (args.shard.empty()) return;
   for (const auto& [flag, given] :
        {std::pair("--plain", args.plain), std::pair("--npz", !args.npz.empty()), std::pair("--vtk", !args.vtk.empty()),
@@ -219,13 +238,10 @@ void check_row_of_vtk(const MatrixArguments& args, const std::vector<Selection>&
                to.empty() ? "name patches by --to" : "name one patch by --from");
 }
 
-void write_files(const MatrixArguments& args, const Scene& scene, const matrix::Options& options,
-                 const matrix::Matrix& matrix) {
+void write_files(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
   const auto write_text = [](const std::string& file, const auto& text) {
     if (!file.empty()) write_whole_file(file, text());
   };
-  if (!args.keeps_work())
-    write_text(args.csv, [&] { return table::csv_text(table_of(scene, matrix, options.factors)); });
   if (!args.npz.empty()) write_npz(scene, matrix, args.npz);
   write_text(args.view3d, [&] { return view3d_text(scene, matrix); });
   write_text(args.energyplus, [&] { return energyplus_text(scene, matrix, args.zone); });
@@ -263,9 +279,13 @@ void check_content(const MatrixArguments& args, const Scene& scene, const std::v
                    const std::vector<Selection>& to) {
   check_row_of_vtk(args, from, to);
   check_overlaps(args, scene, to);
-  const matrix::Matrix empty{{from, to, std::vector<ViewFactor>(from.size() * to.size())}, {}, {}, {}};
+  matrix::Matrix empty{{from, to, std::vector<ViewFactor>(from.size() * to.size())}, {}, {}, {}};
   if (!args.view3d.empty()) (void)view3d_text(scene, empty);
   if (!args.energyplus.empty()) (void)energyplus_text(scene, empty, args.zone);
+  if (!args.balance) return;
+  empty.back.resize(from.size());
+  empty.open.resize(from.size());
+  require_balanceable(scene, empty);
 }
 
 // A request and the scene that it refers to.
@@ -281,7 +301,8 @@ std::unique_ptr<MatrixJob> job_of(const MatrixArguments& args, const jobs::Team*
   matrix::Request& request = job->request;
   request.scene = &job->scene;
   request.options = args.options;
-  request.options.open = flags::take_sky(job->scene, to);
+  request.options.open = flags::take_sky(job->scene, to) || args.balance;
+  request.options.backs = args.options.backs || args.balance;
   if (args.options.threads == 0 && team != nullptr) request.options.threads = jobs::fair_threads(*team);
   request.from = flags::selections_named(job->scene, args.from);
   request.to = flags::selections_named(job->scene, to);
@@ -290,7 +311,10 @@ std::unique_ptr<MatrixJob> job_of(const MatrixArguments& args, const jobs::Team*
   return job;
 }
 
-matrix::Matrix compute(const MatrixJob& job) {
+matrix::Matrix compute(const MatrixArguments& args, MatrixJob& job) {
+  if (!args.matrix.empty()) {
+    return matrix_in_file(args.matrix, job.scene, job.request.from, job.request.to, job.request.options.factors);
+  }
   const InterruptWatch watch("exactff: interrupted; nothing was written\n");
   LateNote note(words_on_speed(job.request));
   ProgressBar bar;
@@ -307,13 +331,41 @@ void print_summary(const MatrixArguments& args, const jobs::Summary& summary) {
   check_output(std::cout);
 }
 
+void print_balanced(const matrix::Matrix& matrix, const matrix::Balanced& balanced) {
+  double most = 0.0, share = 0.0;
+  const auto compare = [&](const ViewFactor& f, double value) {
+    const double moved = std::abs(value - f.value);
+    most = std::max(most, moved);
+    if (moved > 0.0 && f.upper > f.lower) share = std::max(share, moved / (f.upper - f.lower));
+  };
+  for (std::size_t k = 0; k < balanced.entries.size(); ++k) compare(matrix.factors.entries[k], balanced.entries[k]);
+  for (std::size_t i = 0; i < balanced.back.size(); ++i) compare(matrix.back[i], balanced.back[i]);
+  for (std::size_t i = 0; i < balanced.open.size(); ++i) compare(matrix.open[i], balanced.open[i]);
+  std::cout << "Balanced: entries moved by at most " << text::short_number(most, 2) << ", "
+            << text::short_number(share, 2)
+            << " of the widths of their intervals; in every pair the products A_i F_ij and\n"
+            << "A_j F_ji are the same double; the rows add up to 1 within " << text::short_number(balanced.furthest, 2)
+            << ".\n\n";
+}
+
 // The values of the finished file, or of no file at all.
-int finish(const MatrixArguments& args, const MatrixJob& job, const matrix::Matrix& matrix) {
+int finish(const MatrixArguments& args, const MatrixJob& job, matrix::Matrix matrix) {
   const matrix::Options& options = job.request.options;
   const std::vector<Problem> wide = problems_of_width(job.scene, matrix, options.factors);
   print_warnings(wide);
-  write_files(args, job.scene, options, matrix);
-  args.plain ? print_plain(job.scene, matrix) : print_table(job.scene, matrix);
+  std::optional<matrix::Balanced> balanced;
+  if (args.balance) {
+    balanced = matrix::balanced(job.scene, matrix);
+    print_warnings(problems_of(job.scene, matrix, *balanced));
+    if (!balanced->is_found()) return 1;
+  }
+  if (!args.keeps_work() && !args.csv.empty()) {
+    write_whole_file(args.csv, csv_text(table_of(job.scene, matrix, options.factors, balanced ? &*balanced : nullptr)));
+  }
+  if (balanced && !args.plain) print_balanced(matrix, *balanced);
+  if (balanced) matrix = with_values(std::move(matrix), *balanced);
+  write_files(args, job.scene, matrix);
+  args.plain ? print_plain(job.scene, matrix, args.balance) : print_table(job.scene, matrix);
   const bool rows_hold = test_rows(args, job.scene, matrix),
              directions_agree = test_reciprocity(args, job.scene, matrix);
   if (!args.plain) print_files(args);
@@ -326,7 +378,8 @@ int write(const MatrixArguments& args, jobs::Team* team) {
   check_outputs(args);
   if (!args.keeps_work()) {
     const std::unique_ptr<MatrixJob> job = job_of(args, nullptr);
-    return finish(args, *job, compute(*job));
+    matrix::Matrix matrix = compute(args, *job);
+    return finish(args, *job, std::move(matrix));
   }
   Narrator narrator("pair");
   jobs::Summary summary;
@@ -414,16 +467,29 @@ Command add_matrix(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces");
   command->add_option("--two-sided", args->two_sided, kTwoSidedHelp)->type_name("NAME");
-  command->add_flag("--both-directions", args->options.factors.both_directions,
-                    "Compute F_ij and F_ji apart, and compare A_i F_ij with A_j F_ji");
-  command->add_option("--accuracy", args->options.factors.accuracy, "Largest width of an entry, for F_ij and for F_ji")
-      ->capture_default_str();
-  command->add_option("--budget", args->options.factors.budget, kBudgetHelp)
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
-      ->capture_default_str();
-  add_claim(*command, args->options.factors.certify);
-  command->add_flag("--plain", args->plain,
-                    "Print a line for each entry: FROM, TO, LOWER, UPPER, CLAIM, WAY, with tabs");
+  CLI::Option* both = command->add_flag("--both-directions", args->options.factors.both_directions,
+                                        "Compute F_ij and F_ji apart, and compare A_i F_ij with A_j F_ji");
+  CLI::Option* accuracy =
+      command
+          ->add_option("--accuracy", args->options.factors.accuracy, "Largest width of an entry, for F_ij and for F_ji")
+          ->capture_default_str();
+  CLI::Option* budget = command->add_option("--budget", args->options.factors.budget, kBudgetHelp)
+                            ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
+                            ->capture_default_str();
+  const ClaimOptions claims = add_claim(*command, args->options.factors.certify);
+  flags::add_read(*command, "--matrix", args->matrix, "Take the entries from this file of exactff matrix")
+      ->excludes(accuracy)
+      ->excludes(budget)
+      ->excludes(claims.claim)
+      ->excludes(claims.certify)
+      ->excludes(both);
+  command->add_flag(
+      "--balance", args->balance,
+      "Choose values within all intervals so that A_i F_ij = A_j F_ji and every row adds up to 1; computes "
+      "backs and the sky, too");
+  command->add_flag(
+      "--plain", args->plain,
+      "Print a line for each entry: FROM, TO, LOWER, UPPER, CLAIM, WAY, with tabs; by --balance also VALUE");
   add_outputs(*command, *args);
   command
       ->add_option("--threads", args->options.threads,

@@ -350,12 +350,6 @@ void print(const RadiosityArguments& args, const Scene& scene, const Solution& s
   }
 }
 
-void require_matrix_of(const Scene& scene, const matrix::NamedMatrix& matrix) {
-  if (matrix.head.text("scene_hash") == scene.hash()) return;
-  text::refuse(std::filesystem::path(matrix.file), "holds the view factors of another scene",
-               "its head has another hash", "give the same scene, with the same --divide, --two-sided and --patches");
-}
-
 // Nothing if it was interrupted.
 std::optional<matrix::Matrix> kept_view_factors(const RadiosityArguments& args, const matrix::Request& request) {
   const std::string file = args.kept_factors();
@@ -379,12 +373,7 @@ std::optional<matrix::Matrix> view_factors_of(const RadiosityArguments& args, co
     return kept_view_factors(args,
                              {.scene = &scene, .from = patches, .to = patches, .options = of_matrix, .shard = {}});
   }
-  matrix::NamedMatrix named = matrix::read_named(args.matrix);
-  require_matrix_of(scene, named);
-  options = matrix::options_of(named.head);
-  const matrix::Options as_there{.factors = options, .backs = !named.back.empty(), .open = !named.open.empty()};
-  return matrix::matrix_of({.scene = &scene, .from = patches, .to = patches, .options = as_there, .shard = {}},
-                           std::move(named));
+  return matrix_in_file(args.matrix, scene, patches, patches, options);
 }
 
 // Solves, and computes view factors again where a width is wanted.

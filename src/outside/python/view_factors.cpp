@@ -9,6 +9,7 @@
 #include "exactff/radiosity.h"
 #include "exactff/slips.h"
 #include "exactff/view.h"
+#include "matrix/balanced.h"
 #include "matrix/row_on_faces.h"
 #include "python/bindings.h"
 #include "radiosity/narrowing.h"
@@ -63,13 +64,39 @@ class MadeMatrix {
     const Scene& scene = shared_->scene();
     if (extension == ".npz") return matrix::write_npz(scene, made_, path);
     if (extension == ".vtp" || extension == ".vtu") return write_row(path);
-    if (extension == ".csv")
-      return write_whole_files({{path, table::csv_text(matrix::table_of(scene, made_, options_))}});
+    if (extension == ".csv") return write_whole_files({{path, csv_text()}});
     refuse_overlaps(path);
     write_whole_files({{path, extension == ".idf" ? energyplus_text(scene, made_, zone) : view3d_text(scene, made_)}});
   }
 
+  // The same with balanced values; that of rows, and the largest distance of a row from 1.
+  [[nodiscard]] py::tuple balanced() const {
+    matrix::Balanced found;
+    auto result = std::make_shared<MadeMatrix>(*this);
+    {
+      const py::gil_scoped_release released;
+      found = matrix::balanced(shared_->scene(), made_);
+      if (std::vector<Problem> problems = problems_of(shared_->scene(), made_, found); !problems.empty()) {
+        throw InputError(std::move(problems));
+      }
+      result->unbalanced_ = std::make_shared<const matrix::Matrix>(made_);
+      result->made_ = with_values(std::move(result->made_), found);
+    }
+    const py::tuple lists =
+        py::make_tuple(to_array(found.entries), to_array(found.back), to_array(found.open), to_array(found.buried));
+    const double furthest = found.furthest;
+    result->balanced_ = std::make_shared<const matrix::Balanced>(std::move(found));
+    return lists + py::make_tuple(furthest, result);
+  }
+
  private:
+  static Numbers to_array(const std::vector<double>& values) {
+    return Numbers(static_cast<py::ssize_t>(values.size()), values.data());
+  }
+  [[nodiscard]] std::string csv_text() const {
+    const matrix::Matrix& values = unbalanced_ ? *unbalanced_ : made_;
+    return table::csv_text(table_of(shared_->scene(), values, options_, balanced_.get()));
+  }
   void write_row(const std::filesystem::path& path) const {
     if (made_.factors.from.size() != 1 || made_.factors.to.empty()) {
       text::refuse(path, "shows one row on the patches of the scene",
@@ -92,6 +119,8 @@ class MadeMatrix {
   std::shared_ptr<const SharedScene> shared_;
   matrix::Matrix made_;
   ViewFactorOptions options_;
+  std::shared_ptr<const matrix::Matrix> unbalanced_;  // null unless `made_` is balanced
+  std::shared_ptr<const matrix::Balanced> balanced_;
 };
 
 // Entries row by row, backs, what is open, what is buried, sums of rows (lower, upper), reasons
@@ -158,6 +187,7 @@ py::tuple view_of(const SharedScene& scene, const std::array<double, 3>& point, 
 
 void bind_view_factors(py::module_& module) {
   py::class_<MadeMatrix, std::shared_ptr<MadeMatrix>>(module, "MadeMatrix")
+      .def("balanced", &MadeMatrix::balanced)
       .def("write", &MadeMatrix::write, py::arg("path"), py::arg("extension"), py::arg("zone"));
   module.def("view_factor", &view_factor_of, py::arg("scene"), py::arg("from_patch"), py::arg("to_patch"),
              py::arg("accuracy"), py::arg("budget"), py::arg("certify"));
