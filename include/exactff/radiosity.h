@@ -129,6 +129,44 @@ struct Widest {
 // beside B_i, the patch should be divided. An estimate: nothing is known of points in between.
 void set_variation(const Scene& scene, Solution& solution, int threads = 0, const Hooks& hooks = {});
 
+// --- Exchange factors ---
+
+// Gebhart's factors B_ij: of what patch i emits, the share that patch j absorbs after all bounces, if patches are gray
+// and diffuse with emissivity eps = 1 - Kd in each channel. Backs of faces and what is open are black.
+//
+//   B_ij = F_ij eps_j + sum_k F_ik rho_k B_kj
+//
+// B_ij grows with every F, so it lies between its values for the bounds of F; these follow from the inequalities of
+// radiosity/system.h, for one column after another: where only j emits 1, eps_j times the irradiance of i is B_ij.
+struct Exchange {
+  struct Channel {
+    std::vector<BoundedValue> factors;     // B_ij, row by row
+    std::vector<BoundedValue> back, open;  // of each row, to the black rest; empty if the matrix does not have them
+    // GR_ij = eps_i A_i B_ij, in the square of the scene's unit of length. Symmetric to the bit. Heat flows from i to j
+    // by sigma GR_ij (T_i^4 - T_j^4), and from i into the black rest of temperature T by sigma GR (T_i^4 - T^4).
+    std::vector<BoundedValue> conductors;
+    std::vector<BoundedValue> conductors_to_back, conductors_to_open;
+    std::vector<double> emissivities;  // 1 - Kd
+    std::string no_bound, remedy;      // as in Channel above
+    [[nodiscard]] bool is_bounded() const { return no_bound.empty(); }
+  };
+  std::vector<Selection> patches;
+  std::vector<double> areas;      // as in Solution
+  std::vector<Channel> channels;  // red, green and blue; one if they have the same Kd everywhere
+  Claim claim = Claim::kZero;     // of the bounds: the weakest of the matrix
+};
+
+// Requires the factors between all of patches_of(scene). Values are estimates, by the values of the matrix, to about
+// 1e-14: if these are balanced (matrix::with_values), values of a row add up to 1 with back and open. Threads do not
+// affect the result. Throws InputError for a matrix of other patches, for a Kd above 1, and what patches_of throws.
+[[nodiscard]] Exchange exchange(const Scene& scene, const matrix::Matrix& matrix, int threads = 0,
+                                const Hooks& hooks = {});
+
+// A row for each pair and channel:
+// from,to,channel,exchange,lower,upper,conductor,conductor_lower,conductor_upper,claim. `to` may be (back) or (open);
+// with one channel, it is called `all`. What is infinite or not known is empty.
+[[nodiscard]] table::Table table_of(const Scene& scene, const Exchange& exchange, const ViewFactorOptions& options);
+
 // The claim of a channel: that of the solution, or "no bound".
 [[nodiscard]] std::string_view claim_text(const Solution& solution, const Channel& channel);
 

@@ -17,6 +17,7 @@
 #include "cli/output.h"
 #include "cli/process.h"
 #include "cli/view_factor_words.h"
+#include "exactff/radiosity.h"
 #include "exactff/version.h"
 #include "flags/file_options.h"
 #include "flags/scene.h"
@@ -51,16 +52,17 @@ constexpr const char* kMatrixFooter =
     "jobs with --shard 1/4, 2/4, ... whose files `exactff merge` joins. With --resume and a complete FILE, also a\n"
     "merged one, the other files are made again. The bytes depend on none of this.\n"
     "View3D's output has six decimals and no bounds; its rows add up to 1 only within that. EnergyPlus reads the\n"
-    "names of patches as names of surfaces.\n"
-    "--balance chooses the nearest matrix within all intervals in which A_i F_ij and A_j F_ji are the same double and\n"
-    "every row adds up to 1 within one ulp. If there is none, the exit code is 1 and a warning names the rows or "
-    "pairs\n"
-    "that prove it. -o then has the column 'balanced', and all other files and the table have its values. --matrix "
-    "FILE\n"
-    "takes the entries from a file of `exactff matrix SCENE -o FILE`. Where fronts of two patches overlap in one "
-    "plane, such as a window and\n"
+    "names of patches as names of surfaces. Where fronts of two patches overlap in one plane, such as a window and\n"
     "its wall, both count in full and rows exceed 1: a warning names them, and neither file is written without\n"
     "--force.\n"
+    "--balance chooses the nearest matrix within all intervals in which A_i F_ij and A_j F_ji are the same double and\n"
+    "every row adds up to 1 within one ulp. If there is none, a warning names the rows or pairs that prove it, and "
+    "the\n"
+    "exit code is 1. -o then has the column 'balanced', and the table and all other files have its values.\n"
+    "--matrix FILE takes the entries from a file of `exactff matrix SCENE -o FILE`, with all columns that are needed.\n"
+    "--exchange FILE holds Gebhart's factors: of what a patch emits, the share that another one absorbs after all\n"
+    "bounces, with the emissivity 1 - Kd; backs and the sky are black. Bounds follow from those of the view factors,\n"
+    "values from the balanced matrix if --balance is given. 'conductor' is emissivity times area times this factor.\n"
     "\n"
     "Examples:\n"
     "  exactff matrix data/scenes/cornell_box.obj --from light --to 'floor,*_block' --accuracy 1e-4\n"
@@ -74,13 +76,15 @@ struct MatrixArguments {
   matrix::Options options;
   bool plain = false, balance = false;
   std::string matrix;  // a file
-  std::string csv, npz, view3d, energyplus, vtk;
+  std::string csv, npz, view3d, energyplus, vtk, exchange;
   std::string zone = "Zone 1";
   std::string shard;
   bool resume = false;
   bool force = false;
 
   [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
+  // Whether every row must have all that it sees.
+  [[nodiscard]] bool needs_all() const { return balance || !exchange.empty(); }
   // A pipe or a device has no journal.
   [[nodiscard]] bool keeps_work() const {
     std::error_code ignored;
@@ -210,7 +214,8 @@ void check_shard_and_resume(const MatrixArguments& args) {
   if (args.shard.empty()) return;
   for (const auto& [flag, given] :
        {std::pair("--plain", args.plain), std::pair("--npz", !args.npz.empty()), std::pair("--vtk", !args.vtk.empty()),
-        std::pair("--view3d", !args.view3d.empty()), std::pair("--energyplus", !args.energyplus.empty())}) {
+        std::pair("--exchange", !args.exchange.empty()), std::pair("--view3d", !args.view3d.empty()),
+        std::pair("--energyplus", !args.energyplus.empty())}) {
     if (!given) continue;
     text::refuse(
         std::string(flag) + " is given with --shard", "a shard has only a part of the entries",
@@ -225,9 +230,12 @@ void check_outputs(const MatrixArguments& args) {
   } else if (!args.csv.empty()) {
     require_free_file(args.csv, args.force);
   }
-  check_output_files(
-      {{"--npz", args.npz}, {"--view3d", args.view3d}, {"--energyplus", args.energyplus}, {"--vtk", args.vtk}},
-      args.existing() != jobs::Existing::kRefuse);
+  check_output_files({{"--npz", args.npz},
+                      {"--view3d", args.view3d},
+                      {"--energyplus", args.energyplus},
+                      {"--vtk", args.vtk},
+                      {"--exchange", args.exchange}},
+                     args.existing() != jobs::Existing::kRefuse);
 }
 
 void check_row_of_vtk(const MatrixArguments& args, const std::vector<Selection>& from,
@@ -252,11 +260,10 @@ void write_files(const MatrixArguments& args, const Scene& scene, const matrix::
 }
 
 void print_files(const MatrixArguments& args) {
-  const std::vector<std::pair<const char*, const std::string*>> files = {{"Matrix", &args.csv},
-                                                                         {"NumPy file", &args.npz},
-                                                                         {"View3D file", &args.view3d},
-                                                                         {"EnergyPlus file", &args.energyplus},
-                                                                         {"VTK file", &args.vtk}};
+  const std::vector<std::pair<const char*, const std::string*>> files = {
+      {"Matrix", &args.csv},         {"NumPy file", &args.npz},
+      {"View3D file", &args.view3d}, {"EnergyPlus file", &args.energyplus},
+      {"VTK file", &args.vtk},       {"Exchange factors", &args.exchange}};
   for (const auto& [what, file] : files) {
     if (!file->empty()) std::cout << what << ": " << text::printable(*file) << '\n';
   }
@@ -301,8 +308,8 @@ std::unique_ptr<MatrixJob> job_of(const MatrixArguments& args, const jobs::Team*
   matrix::Request& request = job->request;
   request.scene = &job->scene;
   request.options = args.options;
-  request.options.open = flags::take_sky(job->scene, to) || args.balance;
-  request.options.backs = args.options.backs || args.balance;
+  request.options.open = flags::take_sky(job->scene, to) || args.needs_all();
+  request.options.backs = args.options.backs || args.needs_all();
   if (args.options.threads == 0 && team != nullptr) request.options.threads = jobs::fair_threads(*team);
   request.from = flags::selections_named(job->scene, args.from);
   request.to = flags::selections_named(job->scene, to);
@@ -348,6 +355,21 @@ void print_balanced(const matrix::Matrix& matrix, const matrix::Balanced& balanc
             << ".\n\n";
 }
 
+// Returns whether all of them have bounds.
+bool write_exchange(const MatrixArguments& args, const MatrixJob& job, const matrix::Matrix& matrix) {
+  ProgressBar bar;
+  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const radiosity::Exchange found = radiosity::exchange(job.scene, matrix, job.request.options.threads, hooks);
+  bar.clear();
+  table::write(table_of(job.scene, found, job.request.options.factors), args.exchange);
+  for (const radiosity::Exchange::Channel& channel : found.channels) {
+    if (channel.is_bounded()) continue;
+    warn("some exchange factors have no bound", channel.no_bound, channel.remedy);
+    return false;
+  }
+  return true;
+}
+
 // The values of the finished file, or of no file at all.
 int finish(const MatrixArguments& args, const MatrixJob& job, matrix::Matrix matrix) {
   const matrix::Options& options = job.request.options;
@@ -365,13 +387,14 @@ int finish(const MatrixArguments& args, const MatrixJob& job, matrix::Matrix mat
   if (balanced && !args.plain) print_balanced(matrix, *balanced);
   if (balanced) matrix = with_values(std::move(matrix), *balanced);
   write_files(args, job.scene, matrix);
+  const bool bounded = args.exchange.empty() || write_exchange(args, job, matrix);
   args.plain ? print_plain(job.scene, matrix, args.balance) : print_table(job.scene, matrix);
   const bool rows_hold = test_rows(args, job.scene, matrix),
              directions_agree = test_reciprocity(args, job.scene, matrix);
   if (!args.plain) print_files(args);
   check_output(std::cout);
   if (!rows_hold || !directions_agree) return 1;
-  return wide.empty() ? 0 : kNotAsAsked;
+  return wide.empty() && bounded ? 0 : kNotAsAsked;
 }
 
 int write(const MatrixArguments& args, jobs::Team* team) {
@@ -440,6 +463,10 @@ void add_outputs(CLI::App& command, MatrixArguments& args) {
       ->capture_default_str();
   flags::add_written(command, "--vtk", args.vtk,
                      "Write the one row that --from names, on the scene, as NAME.vtp or NAME.vtu", flags::Format::kVtk);
+  flags::add_written(command, "--exchange", args.exchange,
+                     "Write exchange factors over all bounces and radiative conductors, with bounds, as CSV, .npz or "
+                     ".jsonl; computes backs and the sky, too",
+                     flags::Format::kAny);
   command.add_option("--shard", args.shard, "Compute only part I of N, for exactff merge: 1/4 is the first of four")
       ->type_name("I/N");
   CLI::Option* resume = command.add_flag("--resume", args.resume, "Continue an interrupted run, if there is one");

@@ -89,7 +89,33 @@ class MadeMatrix {
     return lists + py::make_tuple(furthest, result);
   }
 
+  // For each channel: factors, back, open, conductors, those to back and to open, each (k, 3): value, lower, upper;
+  // then emissivities and the reason for no bound. The claim; the CSV file, in `path` if it is not empty.
+  [[nodiscard]] py::tuple exchange(int threads, const std::filesystem::path& path, const py::object& progress) const {
+    const Scene& scene = shared_->scene();
+    Interrupt interrupt(progress);
+    const radiosity::Exchange found =
+        interrupt.run([&] { return radiosity::exchange(scene, made_, threads, interrupt.hooks()); });
+    if (!path.empty()) table::write(table_of(scene, found, options_), path);
+    py::list channels;
+    for (const radiosity::Exchange::Channel& c : found.channels) {
+      channels.append(py::make_tuple(to_array(c.factors), to_array(c.back), to_array(c.open), to_array(c.conductors),
+                                     to_array(c.conductors_to_back), to_array(c.conductors_to_open),
+                                     to_array(c.emissivities), c.no_bound));
+    }
+    return py::make_tuple(channels, std::string(to_string(found.claim)), found.areas);
+  }
+
  private:
+  static Numbers to_array(const std::vector<radiosity::BoundedValue>& values) {
+    Numbers array({values.size(), std::size_t{3}});
+    auto entry = array.mutable_unchecked<2>();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto row = static_cast<py::ssize_t>(i);
+      entry(row, 0) = values[i].value, entry(row, 1) = values[i].lower, entry(row, 2) = values[i].upper;
+    }
+    return array;
+  }
   static Numbers to_array(const std::vector<double>& values) {
     return Numbers(static_cast<py::ssize_t>(values.size()), values.data());
   }
@@ -188,6 +214,7 @@ py::tuple view_of(const SharedScene& scene, const std::array<double, 3>& point, 
 void bind_view_factors(py::module_& module) {
   py::class_<MadeMatrix, std::shared_ptr<MadeMatrix>>(module, "MadeMatrix")
       .def("balanced", &MadeMatrix::balanced)
+      .def("exchange", &MadeMatrix::exchange, py::arg("threads"), py::arg("path"), py::arg("progress"))
       .def("write", &MadeMatrix::write, py::arg("path"), py::arg("extension"), py::arg("zone"));
   module.def("view_factor", &view_factor_of, py::arg("scene"), py::arg("from_patch"), py::arg("to_patch"),
              py::arg("accuracy"), py::arg("budget"), py::arg("certify"));
