@@ -187,6 +187,24 @@ void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::
 // Throws InputError unless rows and columns are the same patches.
 [[nodiscard]] std::string view3d_text(const Scene& scene, const Matrix& matrix);
 
+// Files of programs that know surfaces by number: patches are numbered in the order of the rows, from 0 or 1, and names
+// get lost, except where the format has comments. Values have every digit. Throw InputError unless rows and columns are
+// the same patches.
+
+// The files F and globalFaceFaces of OpenFOAM's viewFactorsGen, for cases whose agglomeration makes one coarse face of
+// each patch, in this order.
+struct OpenFoamFiles {
+  std::string factors, faces;
+};
+[[nodiscard]] OpenFoamFiles openfoam_files(const Scene& scene, const Matrix& matrix);
+// The file that *VIEWFACTOR, READ of CalculiX 2.20 reads, in the order of its faces.
+[[nodiscard]] std::string calculix_text(const Scene& scene, const Matrix& matrix);
+// CSV as MOOSE's ViewFactorVectorPostprocessor writes it: subdomain_id,vf_to_1,vf_to_2,...
+[[nodiscard]] std::string moose_text(const Scene& scene, const Matrix& matrix);
+// What vf_read_view_factors of Nek5000 and NekRS reads: for each wall, "iw ieg ifc n", then n times "jw jeg jfc F".
+// A patch named "12:3" is face 3 of element 12; with any other name in the scene, all are face 1 of their own number.
+[[nodiscard]] std::string nek_text(const Scene& scene, const Matrix& matrix);
+
 // An object ZoneProperty:UserViewFactors:bySurfaceName for the input file of EnergyPlus. Throws InputError unless rows
 // and columns are the same patches, or for a name that such a file cannot hold.
 [[nodiscard]] std::string energyplus_text(const Scene& scene, const Matrix& matrix, const std::string& zone);

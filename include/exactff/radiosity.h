@@ -167,6 +167,11 @@ struct Exchange {
 // with one channel, it is called `all`. What is infinite or not known is empty.
 [[nodiscard]] table::Table table_of(const Scene& scene, const Exchange& exchange, const ViewFactorOptions& options);
 
+// Conductors as lines GR(1, 2) = 0.25; of ESATAN's $CONDUCTORS block, once for each pair, without those that are 0.
+// Nodes are numbers from 1; after the patches come one for backs and one for what is open, if the matrix has them.
+// Comments name the nodes. Throws InputError unless the three channels are alike and have values.
+[[nodiscard]] std::string esatan_text(const Scene& scene, const Exchange& exchange);
+
 // The claim of a channel: that of the solution, or "no bound".
 [[nodiscard]] std::string_view claim_text(const Solution& solution, const Channel& channel);
 

@@ -2,6 +2,7 @@
 #include "exactff/matrix.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -68,6 +69,30 @@ constexpr const char* kMatrixFooter =
     "  exactff matrix data/scenes/cornell_box.obj --from light --to 'floor,*_block' --accuracy 1e-4\n"
     "  exactff matrix data/scenes/formats/test4.vs3 --backs --to all,sky --npz build/factors.npz";
 
+// --- Files of other programs ---
+
+// Those that number surfaces, with what their files lose.
+struct ProgramFile {
+  const char *flag, *what, *help, *lost;
+  std::string (*text)(const Scene&, const matrix::Matrix&);
+  flags::Beside beside = flags::Beside::kNothing;
+};
+constexpr const char* kNumbers = "bounds and names; patches are numbered in the order of the rows";
+const std::array<ProgramFile, 5> kProgramFiles{{
+    {"--openfoam", "OpenFOAM file", "Write F as OpenFOAM's viewFactorsGen does, and globalFaceFaces beside it",
+     "bounds and names; coarse face k of the case must be patch k",
+     [](const Scene& scene, const matrix::Matrix& m) { return openfoam_files(scene, m).factors; },
+     flags::Beside::kFaceFaces},
+    {"--calculix", "CalculiX file", "Write the file (.vwf) that *VIEWFACTOR, READ of CalculiX 2.20 reads", kNumbers,
+     matrix::calculix_text},
+    {"--moose", "MOOSE file", "Write CSV as MOOSE's ViewFactorVectorPostprocessor does", kNumbers, matrix::moose_text},
+    {"--nek", "Nek5000 file", "Write view factors for Nek5000 and NekRS; a patch named 12:3 is face 3 of element 12",
+     kNumbers, matrix::nek_text},
+    {"--esatan", "ESATAN file", "Write the conductors as lines GR(1, 2) = ...; computes backs and the sky, too",
+     "bounds; comments have the names", nullptr},
+}};
+constexpr std::size_t kEsatan = kProgramFiles.size() - 1;
+
 constexpr std::size_t kMostShown = 12;  // rows and columns of the printed table
 
 struct MatrixArguments {
@@ -77,6 +102,7 @@ struct MatrixArguments {
   bool plain = false, balance = false;
   std::string matrix;  // a file
   std::string csv, npz, view3d, energyplus, vtk, exchange;
+  std::array<std::string, kProgramFiles.size()> programs;  // files of kProgramFiles
   std::string zone = "Zone 1";
   std::string shard;
   bool resume = false;
@@ -84,7 +110,17 @@ struct MatrixArguments {
 
   [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
   // Whether every row must have all that it sees.
-  [[nodiscard]] bool needs_all() const { return balance || !exchange.empty(); }
+  [[nodiscard]] bool needs_all() const { return balance || exchanges(); }
+  [[nodiscard]] bool exchanges() const { return !exchange.empty() || !programs[kEsatan].empty(); }
+  [[nodiscard]] bool has_program_file() const {
+    return !view3d.empty() || !energyplus.empty() ||
+           std::ranges::any_of(programs, [](const std::string& file) { return !file.empty(); });
+  }
+  // Of --openfoam.
+  [[nodiscard]] std::filesystem::path face_faces() const {
+    return programs[0].empty() ? std::filesystem::path()
+                               : std::filesystem::path(programs[0]).replace_filename("globalFaceFaces");
+  }
   // A pipe or a device has no journal.
   [[nodiscard]] bool keeps_work() const {
     std::error_code ignored;
@@ -212,6 +248,12 @@ void check_shard_and_resume(const MatrixArguments& args) {
                      std::string(args.balance ? " --balance" : " without this flag"));
   }
   if (args.shard.empty()) return;
+  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) {
+    if (args.programs[k].empty()) continue;
+    text::refuse(
+        std::string(kProgramFiles[k].flag) + " is given with --shard", "a shard has only a part of the entries",
+        "after exactff merge, run this command without --shard, with --resume and -o FILE for the merged file");
+  }
   for (const auto& [flag, given] :
        {std::pair("--plain", args.plain), std::pair("--npz", !args.npz.empty()), std::pair("--vtk", !args.vtk.empty()),
         std::pair("--exchange", !args.exchange.empty()), std::pair("--view3d", !args.view3d.empty()),
@@ -230,12 +272,11 @@ void check_outputs(const MatrixArguments& args) {
   } else if (!args.csv.empty()) {
     require_free_file(args.csv, args.force);
   }
-  check_output_files({{"--npz", args.npz},
-                      {"--view3d", args.view3d},
-                      {"--energyplus", args.energyplus},
-                      {"--vtk", args.vtk},
-                      {"--exchange", args.exchange}},
-                     args.existing() != jobs::Existing::kRefuse);
+  std::vector<files::NamedFile> files{
+      {"--npz", args.npz}, {"--view3d", args.view3d},     {"--energyplus", args.energyplus},
+      {"--vtk", args.vtk}, {"--exchange", args.exchange}, {"the faces of --openfoam", args.face_faces()}};
+  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) files.push_back({kProgramFiles[k].flag, args.programs[k]});
+  check_output_files(files, args.existing() != jobs::Existing::kRefuse);
 }
 
 void check_row_of_vtk(const MatrixArguments& args, const std::vector<Selection>& from,
@@ -254,6 +295,12 @@ void write_files(const MatrixArguments& args, const Scene& scene, const matrix::
   write_text(args.view3d, [&] { return view3d_text(scene, matrix); });
   write_text(args.energyplus, [&] { return energyplus_text(scene, matrix, args.zone); });
   if (!args.vtk.empty()) write_vtk(scene, matrix, args.vtk);
+  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) {
+    if (!args.programs[k].empty() && k != kEsatan) {
+      write_whole_file(args.programs[k], kProgramFiles[k].text(scene, matrix));
+    }
+  }
+  if (!args.programs[0].empty()) write_whole_file(args.face_faces(), openfoam_files(scene, matrix).faces);
   if (args.view3d.empty()) return;
   warn("View3D's output holds six decimals, no bounds and no names", "factors below 5e-7 become 0",
        "use -o or --npz where more is needed");
@@ -267,14 +314,19 @@ void print_files(const MatrixArguments& args) {
   for (const auto& [what, file] : files) {
     if (!file->empty()) std::cout << what << ": " << text::printable(*file) << '\n';
   }
+  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) {
+    if (args.programs[k].empty()) continue;
+    std::cout << kProgramFiles[k].what << ": " << text::printable(args.programs[k]) << " (without "
+              << kProgramFiles[k].lost << ")\n";
+  }
 }
 
 // Programs for heat take the rows as they are, and would make energy of what exceeds 1.
 void check_overlaps(const MatrixArguments& args, const Scene& scene, const std::vector<Selection>& to) {
   std::optional<Problem> overlaps = problem_of_overlaps(scene, to);
   if (!overlaps) return;
-  if (!args.force && !(args.view3d.empty() && args.energyplus.empty())) {
-    overlaps->why = "a file for EnergyPlus or View3D with such rows makes energy, and was not written";
+  if (!args.force && args.has_program_file()) {
+    overlaps->why = "a file for another program with such rows makes energy, and was not written";
     overlaps->suggestion += "; --force writes it all the same";
     throw InputError(std::move(*overlaps));
   }
@@ -289,6 +341,9 @@ void check_content(const MatrixArguments& args, const Scene& scene, const std::v
   matrix::Matrix empty{{from, to, std::vector<ViewFactor>(from.size() * to.size())}, {}, {}, {}};
   if (!args.view3d.empty()) (void)view3d_text(scene, empty);
   if (!args.energyplus.empty()) (void)energyplus_text(scene, empty, args.zone);
+  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) {
+    if (!args.programs[k].empty() && k != kEsatan) (void)kProgramFiles[k].text(scene, empty);
+  }
   if (!args.balance) return;
   empty.back.resize(from.size());
   empty.open.resize(from.size());
@@ -361,7 +416,8 @@ bool write_exchange(const MatrixArguments& args, const MatrixJob& job, const mat
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
   const radiosity::Exchange found = radiosity::exchange(job.scene, matrix, job.request.options.threads, hooks);
   bar.clear();
-  table::write(table_of(job.scene, found, job.request.options.factors), args.exchange);
+  if (!args.exchange.empty()) table::write(table_of(job.scene, found, job.request.options.factors), args.exchange);
+  if (!args.programs[kEsatan].empty()) write_whole_file(args.programs[kEsatan], esatan_text(job.scene, found));
   for (const radiosity::Exchange::Channel& channel : found.channels) {
     if (channel.is_bounded()) continue;
     warn("some exchange factors have no bound", channel.no_bound, channel.remedy);
@@ -387,7 +443,7 @@ int finish(const MatrixArguments& args, const MatrixJob& job, matrix::Matrix mat
   if (balanced && !args.plain) print_balanced(matrix, *balanced);
   if (balanced) matrix = with_values(std::move(matrix), *balanced);
   write_files(args, job.scene, matrix);
-  const bool bounded = args.exchange.empty() || write_exchange(args, job, matrix);
+  const bool bounded = !args.exchanges() || write_exchange(args, job, matrix);
   args.plain ? print_plain(job.scene, matrix, args.balance) : print_table(job.scene, matrix);
   const bool rows_hold = test_rows(args, job.scene, matrix),
              directions_agree = test_reciprocity(args, job.scene, matrix);
@@ -466,13 +522,17 @@ void add_outputs(CLI::App& command, MatrixArguments& args) {
   flags::add_written(command, "--exchange", args.exchange,
                      "Write exchange factors over all bounces and radiative conductors, with bounds, as CSV, .npz or "
                      ".jsonl; computes backs and the sky, too",
-                     flags::Format::kAny);
+                     flags::Format::kTable);
+  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) {
+    const ProgramFile& one = kProgramFiles[k];
+    flags::add_written(command, one.flag, args.programs[k], one.help, flags::Format::kProgram, one.beside);
+  }
   command.add_option("--shard", args.shard, "Compute only part I of N, for exactff merge: 1/4 is the first of four")
       ->type_name("I/N");
   CLI::Option* resume = command.add_flag("--resume", args.resume, "Continue an interrupted run, if there is one");
   command
       .add_flag("--force", args.force,
-                "Start again and replace existing files; write those for EnergyPlus and View3D even if fronts overlap")
+                "Start again and replace existing files; write those for other programs even if fronts overlap")
       ->excludes(resume);
 }
 
