@@ -172,6 +172,49 @@ struct Exchange {
 // Comments name the nodes. Throws InputError unless the three channels are alike and have values.
 [[nodiscard]] std::string esatan_text(const Scene& scene, const Exchange& exchange);
 
+// --- Temperatures ---
+
+inline constexpr double kStefanBoltzmann = 5.670374419e-8;  // sigma, W / (m^2 K^4)
+
+// What is known of a surface: its temperature in K, or the heat in W that it gives off, net. The scene is in metres.
+struct Known {
+  std::optional<double> temperature = {}, heat = {};
+};
+struct ThermalConditions {
+  std::vector<Known> patches;     // of patches_of(scene), one of the two each
+  double back = 0.0, open = 0.0;  // temperatures, in K, of the black backs of faces and of what is open
+};
+// From a CSV file with the columns patch, T, Q, in any order, one of T and Q in each row. A name means what flags mean
+// by it; the heat of several patches is shared by their areas. (back) and (open) may have a T, which is else 0. Throws
+// one InputError with file:line for every problem, also for patches without a row.
+[[nodiscard]] ThermalConditions read_conditions(const Scene& scene, const std::filesystem::path& file);
+
+// Gray diffuse surfaces with emissivity 1 - Kd that exchange sigma T^4. With J what leaves and H what arrives, per
+// area:
+//   J = eps sigma T^4 + rho H where T is known;   J = H + Q / A where Q is, and then sigma T^4 = H + Q / (A eps).
+// This is the system of radiosities with rho = 1 where Q is known, so J, H, and all that follows from them have bounds.
+struct Temperatures {
+  std::vector<Selection> patches;
+  std::vector<double> areas, emissivities;
+  std::vector<BoundedValue> temperatures;  // in K; both ends are what was given, where it was
+  std::vector<BoundedValue> heats;         // in W, net, given off
+  BoundedValue to_back, to_open;           // heat that goes there, net; 0 where all rows prove that nothing does
+  BoundedValue unbalanced;       // the sum of all heats less these two; its bounds hold 0 where rows add up to 1
+  Claim claim = Claim::kZero;    // of the bounds
+  std::string no_bound, remedy;  // as in Channel
+  [[nodiscard]] bool is_bounded() const { return no_bound.empty(); }
+};
+
+// Requires the factors between all of patches_of(scene), with `back` and `open`. Throws InputError for other matrices;
+// for a patch whose Kd differs between channels or is above 1, or is 1 where Q is known and not 0 or T is wanted; and
+// where more heat is taken away than can arrive.
+[[nodiscard]] Temperatures temperatures(const Scene& scene, const matrix::Matrix& matrix,
+                                        const ThermalConditions& conditions);
+
+// A row for each patch, (back) and (open): patch,temperature,temperature_lower,temperature_upper,heat,heat_lower,
+// heat_upper,emissivity,area,claim.
+[[nodiscard]] table::Table table_of(const Scene& scene, const Temperatures& found, const ViewFactorOptions& options);
+
 // The claim of a channel: that of the solution, or "no bound".
 [[nodiscard]] std::string_view claim_text(const Solution& solution, const Channel& channel);
 
