@@ -482,11 +482,11 @@ std::string words_of_rows(const Scene& scene, const Matrix& matrix, const std::v
 }
 
 std::string words_of_proof(const Scene& scene, const Matrix& matrix, const Balanced& balanced) {
-  const std::string off = " by " + text::short_number(balanced.gap, 2) + " of their areas";
+  const bool is_one = balanced.lacking.size() + balanced.exceeding.size() == 1;
+  const std::string off = " by " + text::short_number(balanced.gap, 2) + (is_one ? "" : " of their areas");
   const std::string lacking = words_of_rows(scene, matrix, balanced.lacking),
                     exceeding = words_of_rows(scene, matrix, balanced.exceeding);
-  const std::string misses =
-      balanced.lacking.size() + balanced.exceeding.size() == 1 ? " misses 1" : " together miss 1";
+  const std::string misses = is_one ? " misses 1" : " together miss 1";
   if (balanced.exceeding.empty()) return lacking + misses + off + ", even if all entries are at their upper bounds";
   if (balanced.lacking.empty()) return exceeding + misses + off + ", even if all entries are at their lower bounds";
   return "with reciprocity, " + lacking + " need more light than " + exceeding + " have to give, and together miss 1" +
