@@ -108,9 +108,10 @@ struct Balanced {
 // The matrix nearest to the values in which every entry lies in its interval, and
 //
 // - A_i * F_ij == A_j * F_ji as products of doubles, each rounded once, in every pair (unless they underflow),
-// - the exact sum of the doubles of a row, with back, open and buried, is 1 to within 2^-52, one ulp (`furthest` has
-// the
-//   largest distance; math.fsum of a row nearly always gives 1.0).
+// - the exact sum of the doubles of a row, with back, open and buried, is 1 to within 2^-52, one ulp, unless a row has
+// so
+//   few entries that no doubles with equal products add up to that: then to a few ulps. `furthest` has the largest
+//   distance (math.fsum of a row nearly always gives 1.0).
 //
 // "Nearest": the sum of squared distances of A_i F_ij over the widths of their intervals is least, up to roundings. An
 // entry whose two intervals overlap only because areas are rounded may miss one by 2^-42 of itself. Depends neither on

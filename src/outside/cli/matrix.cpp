@@ -57,9 +57,9 @@ constexpr const char* kMatrixFooter =
     "its wall, both count in full and rows exceed 1: a warning names them, and neither file is written without\n"
     "--force.\n"
     "--balance chooses the nearest matrix within all intervals in which A_i F_ij and A_j F_ji are the same double and\n"
-    "every row adds up to 1 within one ulp. If there is none, a warning names the rows or pairs that prove it, and "
-    "the\n"
-    "exit code is 1. -o then has the column 'balanced', and the table and all other files have its values.\n"
+    "every row adds up to 1, to an ulp (the output says how far). If there is none, a warning names the rows or pairs\n"
+    "that prove it, and the exit code is 1. -o then has the column 'balanced', and the table and all other files have\n"
+    "its values.\n"
     "--matrix FILE takes the entries from a file of `exactff matrix SCENE -o FILE`, with all columns that are needed.\n"
     "--exchange FILE holds Gebhart's factors: of what a patch emits, the share that another one absorbs after all\n"
     "bounces, with the emissivity 1 - Kd; backs and the sky are black. Bounds follow from those of the view factors,\n"
@@ -435,7 +435,7 @@ int finish(const MatrixArguments& args, const MatrixJob& job, matrix::Matrix mat
   if (args.balance) {
     balanced = matrix::balanced(job.scene, matrix);
     print_warnings(problems_of(job.scene, matrix, *balanced));
-    if (!balanced->is_found()) return 1;
+    if (!balanced->is_found()) return balanced->is_impossible() ? 1 : kNotAsAsked;
   }
   if (!args.keeps_work() && !args.csv.empty()) {
     write_whole_file(args.csv, csv_text(table_of(job.scene, matrix, options.factors, balanced ? &*balanced : nullptr)));
