@@ -506,6 +506,9 @@ void balance_if_possible(const Scene& scene, matrix::Matrix& matrix) {
 }
 
 int run_temperatures(const RadiosityArguments& args, const Scene& scene) {
+  if (!args.vtk.empty()) {
+    text::refuse("--vtk is given with --temperatures", "that file shows radiosities", "write a table by -o");
+  }
   const std::vector<Selection> patches = radiosity::patches_of(scene);
   const radiosity::ThermalConditions conditions = radiosity::read_conditions(scene, args.temperatures);
   ViewFactorOptions options = args.options.factors;
@@ -632,7 +635,7 @@ Command add_radiosity(CLI::App& app) {
       *command, "--temperatures", args->temperatures,
       "Compute temperatures and heats instead: a CSV file with patch, T (in K) or Q (in W); the scene is in "
       "metres");
-  for (const char* other : {"--width", "--vtk", "--json", "--plain", "--resume"}) {
+  for (const char* other : {"--width", "--json", "--plain", "--resume"}) {
     temperatures->excludes(command->get_option(other));
   }
   command
