@@ -81,6 +81,47 @@ struct Reciprocity {
 };
 [[nodiscard]] Reciprocity reciprocity(const Matrix& matrix);
 
+// --- Balanced ------------------------------------------------------------------------------------------------------
+
+// A matrix for programs that need rows that close and reciprocity that holds, so that no energy is made.
+struct Balanced {
+  // As in Matrix: row by row, and for each row. Empty if there is no balanced matrix, or if none was found.
+  std::vector<double> entries, back, open, buried;
+  double furthest = 0.0;  // largest distance of the exact sum of a row from 1
+
+  // Why there is none, by the bounds. Rows as indices.
+  struct Pair {
+    std::size_t row = 0, column = 0;
+  };
+  std::vector<Pair> apart;  // pairs whose two directions have no number in common
+  // Even with all their entries at their upper bounds, rows of `lacking` do not reach their areas; those of `exceeding`
+  // exceed theirs with all entries at their lower bounds; of both together, a sum of rows misses a sum of areas by
+  // `gap`, as a share of the areas of these rows.
+  std::vector<std::size_t> lacking, exceeding;
+  double gap = 0.0;
+  Claim claim = Claim::kZero;  // the weakest one of the bounds that prove it; estimated: a fault is likely, not proved
+
+  [[nodiscard]] bool is_found() const { return !entries.empty(); }
+  [[nodiscard]] bool is_impossible() const { return !apart.empty() || !lacking.empty() || !exceeding.empty(); }
+};
+
+// The matrix nearest to the values in which every entry lies in its interval, and
+//
+// - A_i * F_ij == A_j * F_ji as products of doubles, each rounded once, in every pair (unless they underflow),
+// - the exact sum of the doubles of a row, with back, open and buried, is 1 to within 2^-52, one ulp, unless a row has
+// so
+//   few entries that no doubles with equal products add up to that: then to a few ulps. `furthest` has the largest
+//   distance (math.fsum of a row nearly always gives 1.0).
+//
+// "Nearest": the sum of squared distances of A_i F_ij over the widths of their intervals is least, up to roundings. An
+// entry whose two intervals overlap only because areas are rounded may miss one by 2^-42 of itself. Depends neither on
+// threads nor on the order of the patches, but on their names, which order the sums. Throws InputError unless rows and
+// columns are the same patches and every row must add up to 1: the message has reasons_against_one().
+[[nodiscard]] Balanced balanced(const Scene& scene, const Matrix& matrix);
+
+// The matrix with these values in place of its own. Requires balanced.is_found().
+[[nodiscard]] Matrix with_values(Matrix matrix, const Balanced& balanced);
+
 // The scene with the backs of these patches or faces as patches of their own, named "NAME (back)": every face has a
 // twin in its place that is turned round and has the same material; a face that is not planar and its twin consist of
 // the same triangles. A face in several selections gets one twin. All patches and faces of `scene` keep their ids.
@@ -101,7 +142,9 @@ inline constexpr std::string_view kBuried = "(buried)";
 
 // A row for each entry: from,to,factor,lower,upper,claim,way,accurate,area_from,area_to,cells,event_cells,limit. The
 // head has the options of the view factors and all else that the entries depend on.
-[[nodiscard]] table::Table table_of(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options);
+// With a balanced matrix, each row also has the column `balanced`.
+[[nodiscard]] table::Table table_of(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options,
+                                    const Balanced* balanced = nullptr);
 
 // A matrix as its table has it: with names instead of patches, otherwise to the same bits.
 struct NamedMatrix {
@@ -144,6 +187,24 @@ void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::
 // The output of View3D in its text format (0): areas, rows, emittances (1 - Kd) without names. It holds six decimals.
 // Throws InputError unless rows and columns are the same patches.
 [[nodiscard]] std::string view3d_text(const Scene& scene, const Matrix& matrix);
+
+// Files of programs that know surfaces by number: patches are numbered in the order of the rows, from 0 or 1, and names
+// get lost, except where the format has comments. Values have every digit. Throw InputError unless rows and columns are
+// the same patches.
+
+// The files F and globalFaceFaces of OpenFOAM's viewFactorsGen, for cases whose agglomeration makes one coarse face of
+// each patch, in this order.
+struct OpenFoamFiles {
+  std::string factors, faces;
+};
+[[nodiscard]] OpenFoamFiles openfoam_files(const Scene& scene, const Matrix& matrix);
+// The file that *VIEWFACTOR, READ of CalculiX 2.20 reads, in the order of its faces.
+[[nodiscard]] std::string calculix_text(const Scene& scene, const Matrix& matrix);
+// CSV as MOOSE's ViewFactorVectorPostprocessor writes it: subdomain_id,vf_to_1,vf_to_2,...
+[[nodiscard]] std::string moose_text(const Scene& scene, const Matrix& matrix);
+// What vf_read_view_factors of Nek5000 and NekRS reads: for each wall, "iw ieg ifc n", then n times "jw jeg jfc F".
+// A patch named "12:3" is face 3 of element 12; with any other name in the scene, all are face 1 of their own number.
+[[nodiscard]] std::string nek_text(const Scene& scene, const Matrix& matrix);
 
 // An object ZoneProperty:UserViewFactors:bySurfaceName for the input file of EnergyPlus. Throws InputError unless rows
 // and columns are the same patches, or for a name that such a file cannot hold.

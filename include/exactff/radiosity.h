@@ -129,6 +129,92 @@ struct Widest {
 // beside B_i, the patch should be divided. An estimate: nothing is known of points in between.
 void set_variation(const Scene& scene, Solution& solution, int threads = 0, const Hooks& hooks = {});
 
+// --- Exchange factors ---
+
+// Gebhart's factors B_ij: of what patch i emits, the share that patch j absorbs after all bounces, if patches are gray
+// and diffuse with emissivity eps = 1 - Kd in each channel. Backs of faces and what is open are black.
+//
+//   B_ij = F_ij eps_j + sum_k F_ik rho_k B_kj
+//
+// B_ij grows with every F, so it lies between its values for the bounds of F; these follow from the inequalities of
+// radiosity/system.h, for one column after another: where only j emits 1, eps_j times the irradiance of i is B_ij.
+struct Exchange {
+  struct Channel {
+    std::vector<BoundedValue> factors;     // B_ij, row by row
+    std::vector<BoundedValue> back, open;  // of each row, to the black rest; empty if the matrix does not have them
+    // GR_ij = eps_i A_i B_ij, in the square of the scene's unit of length. Symmetric to the bit. Heat flows from i to j
+    // by sigma GR_ij (T_i^4 - T_j^4), and from i into the black rest of temperature T by sigma GR (T_i^4 - T^4).
+    std::vector<BoundedValue> conductors;
+    std::vector<BoundedValue> conductors_to_back, conductors_to_open;
+    std::vector<double> emissivities;  // 1 - Kd
+    std::string no_bound, remedy;      // as in Channel above
+    [[nodiscard]] bool is_bounded() const { return no_bound.empty(); }
+  };
+  std::vector<Selection> patches;
+  std::vector<double> areas;      // as in Solution
+  std::vector<Channel> channels;  // red, green and blue; one if they have the same Kd everywhere
+  Claim claim = Claim::kZero;     // of the bounds: the weakest of the matrix
+};
+
+// Requires the factors between all of patches_of(scene). Values are estimates, by the values of the matrix, to about
+// 1e-14: if these are balanced (matrix::with_values), values of a row add up to 1 with back and open. Threads do not
+// affect the result. Throws InputError for a matrix of other patches, for a Kd above 1, and what patches_of throws.
+[[nodiscard]] Exchange exchange(const Scene& scene, const matrix::Matrix& matrix, int threads = 0,
+                                const Hooks& hooks = {});
+
+// A row for each pair and channel:
+// from,to,channel,exchange,lower,upper,conductor,conductor_lower,conductor_upper,claim. `to` may be (back) or (open);
+// with one channel, it is called `all`. What is infinite or not known is empty.
+[[nodiscard]] table::Table table_of(const Scene& scene, const Exchange& exchange, const ViewFactorOptions& options);
+
+// Conductors as lines GR(1, 2) = 0.25; of ESATAN's $CONDUCTORS block, once for each pair, without those that are 0.
+// Nodes are numbers from 1; after the patches come one for backs and one for what is open, if the matrix has them.
+// Comments name the nodes. Throws InputError unless the three channels are alike and have values.
+[[nodiscard]] std::string esatan_text(const Scene& scene, const Exchange& exchange);
+
+// --- Temperatures ---
+
+inline constexpr double kStefanBoltzmann = 5.670374419e-8;  // sigma, W / (m^2 K^4)
+
+// What is known of a surface: its temperature in K, or the heat in W that it gives off, net. The scene is in metres.
+struct Known {
+  std::optional<double> temperature = {}, heat = {};
+};
+struct ThermalConditions {
+  std::vector<Known> patches;     // of patches_of(scene), one of the two each
+  double back = 0.0, open = 0.0;  // temperatures, in K, of the black backs of faces and of what is open
+};
+// From a CSV file with the columns patch, T, Q, in any order, one of T and Q in each row. A name means what flags mean
+// by it; the heat of several patches is shared by their areas. (back) and (open) may have a T, which is else 0. Throws
+// one InputError with file:line for every problem, also for patches without a row.
+[[nodiscard]] ThermalConditions read_conditions(const Scene& scene, const std::filesystem::path& file);
+
+// Gray diffuse surfaces with emissivity 1 - Kd that exchange sigma T^4. With J what leaves and H what arrives, per
+// area:
+//   J = eps sigma T^4 + rho H where T is known;   J = H + Q / A where Q is, and then sigma T^4 = H + Q / (A eps).
+// This is the system of radiosities with rho = 1 where Q is known, so J, H, and all that follows from them have bounds.
+struct Temperatures {
+  std::vector<Selection> patches;
+  std::vector<double> areas, emissivities;
+  std::vector<BoundedValue> temperatures;  // in K; both ends are what was given, where it was
+  std::vector<BoundedValue> heats;         // in W, net, given off
+  BoundedValue to_back, to_open;           // heat that goes there, net; 0 where all rows prove that nothing does
+  BoundedValue unbalanced;       // the sum of all heats less these two; its bounds hold 0 where rows add up to 1
+  Claim claim = Claim::kZero;    // of the bounds
+  std::string no_bound, remedy;  // as in Channel
+  [[nodiscard]] bool is_bounded() const { return no_bound.empty(); }
+};
+
+// Requires the factors between all of patches_of(scene), with `back` and `open`. Throws InputError for other matrices;
+// for a patch whose Kd differs between channels or is above 1, or is 1 where Q is known and not 0 or T is wanted; and
+// where more heat is taken away than can arrive.
+[[nodiscard]] Temperatures temperatures(const Scene& scene, const matrix::Matrix& matrix,
+                                        const ThermalConditions& conditions);
+
+// A row for each patch, (back) and (open): patch,temperature,temperature_lower,temperature_upper,heat,heat_lower,
+// heat_upper,emissivity,area,claim.
+[[nodiscard]] table::Table table_of(const Scene& scene, const Temperatures& found, const ViewFactorOptions& options);
+
 // The claim of a channel: that of the solution, or "no bound".
 [[nodiscard]] std::string_view claim_text(const Solution& solution, const Channel& channel);
 

@@ -12,7 +12,7 @@ import pytest
 
 import exactff
 import exactff._exactff as compiled
-from support import CORNELL, SCENES, SOURCE, run
+from support import CORNELL, program, SCENES, SOURCE, run
 
 PACKAGE = pathlib.Path(exactff.__file__).parent
 EXAMPLES = SOURCE / "src" / "outside" / "python" / "examples"
@@ -143,3 +143,33 @@ def test_the_doctest_of_the_package():
     code = "import doctest, exactff, sys; sys.exit(doctest.testmod(exactff).failed)"
     run(sys.executable, "-c", code, cwd=SOURCE)
     assert SCENES.is_dir()
+
+
+def test_the_turned_panel_computes_only_what_it_may_change():
+    """What is kept has the bits of a fresh computation."""
+    example = (EXAMPLES / "turned_panel.py").read_text()
+    assert len(example.splitlines()) < 40
+    kept = run(sys.executable, "-B", EXAMPLES / "turned_panel.py").splitlines()
+    assert len(kept) == 13 and kept[-1] == "220 of 352 factors were kept"
+    anew = run(sys.executable, "-B", "-c", example.replace("keep = before is not None and", "keep = False and")).splitlines()
+    assert anew[:-1] == kept[:-1] and anew[-1] == "0 of 352 factors were kept"
+
+
+def test_the_thermal_network_has_the_temperatures_of_the_program(tmp_path):
+    example = EXAMPLES / "thermal_network.py"
+    assert len(example.read_text().splitlines()) < 40
+    cavity = SOURCE / "data" / "scenes" / "triangular_cavity.obj"
+    found = {line.split()[0]: float(line.split()[1]) for line in run(sys.executable, "-B", example, cavity).splitlines()[:-1]}
+    (tmp_path / "known.csv").write_text("patch,T,Q\nbottom,400,\nside,280,\nslope,,0\nends,,0\n")
+    rows = program("radiosity", cavity, "--temperatures", tmp_path / "known.csv", "--accuracy", "1e-3", "--csv").splitlines()
+    for row in rows[-6:-2]:
+        name, kelvin = row.split(",")[:2]
+        assert found[name] == pytest.approx(float(kelvin), abs=0.01)
+
+
+def test_mean_radiant_temperatures_lie_between_those_of_the_walls():
+    example = EXAMPLES / "mean_radiant.py"
+    assert len(example.read_text().splitlines()) < 40
+    lines = run(sys.executable, "-B", example, CORNELL).splitlines()
+    assert len(lines) == 10
+    assert all(-5.0 < float(line.rsplit("degrees", 1)[0].split()[-1]) < 30.0 for line in lines[:-1])

@@ -1,6 +1,7 @@
 """View factors from patch to patch, and the whole view."""
 
 import csv
+import math
 import pickle
 
 import numpy as np
@@ -181,3 +182,41 @@ def test_of_coincident_faces_a_front_is_seen():
 def test_a_view_by_faces():
     seen = exactff.view(ROOM, POINT, UP, on="auto", patches="faces")
     assert all(":" in name or name in ROOM.names for name in seen) and len(seen) > len(exactff.view(ROOM, POINT, UP))
+
+
+def test_a_balanced_matrix_closes_to_the_bit(tmp_path):
+    scene = exactff.Scene.read(L_ROOM)
+    matrix = exactff.view_factor_matrix(scene, accuracy=1e-3, backs=True, sky=True)
+    found = matrix.balanced()
+    power = found.areas_from[:, None] * found.value
+    assert same_bits(power, power.T) and not same_bits(found.value, matrix.value)
+    assert (found.lower <= found.value).all() and (found.value <= found.upper).all()
+    for row, back, free in zip(found.value.tolist(), found.back, found.open):
+        assert abs(math.fsum([*row, back.value, free.value]) - 1.0) <= 2.0**-52
+    assert found["srf-1", "srf-6"].value == found.value[0, 5]
+    found.save(tmp_path / "m.csv")
+    program("matrix", L_ROOM, "--accuracy", "1e-3", "--balance", "-o", tmp_path / "program.csv")
+    assert (tmp_path / "m.csv").read_bytes() == (tmp_path / "program.csv").read_bytes()
+    found.save(tmp_path / "m.npz")
+    with np.load(tmp_path / "m.npz") as file:
+        assert same_bits(file["data"], found.value[found.claim != "zero"])
+    with pytest.raises(exactff.InputError, match="what meets backs is not computed"):
+        exactff.view_factor_matrix(scene, accuracy=1e-1).balanced()
+
+
+def test_exchange_factors_are_those_of_a_dense_solver(tmp_path):
+    matrix = exactff.view_factor_matrix(ROOM, accuracy=1e-2, backs=True, sky=True).balanced()
+    found = matrix.exchange(save=tmp_path / "b.csv")
+    rho = 1.0 - found.emissivities
+    assert found.names == matrix.from_names and found.value.shape == (3, len(rho[0]), len(rho[0]))
+    for c in range(3):
+        for factors, bound in (matrix.value, found.value), (matrix.lower, found.lower), (matrix.upper, found.upper):
+            b = np.linalg.solve(np.eye(len(rho[c])) - factors * rho[c], factors * found.emissivities[c])
+            np.testing.assert_allclose(bound[c], np.minimum(b, 1.0), rtol=1e-9, atol=1e-12)
+        sums = found.value[c].sum(1) + found.back[c, :, 0] + found.open[c, :, 0]
+        np.testing.assert_allclose(sums, 1.0, atol=1e-13)
+        np.testing.assert_allclose(found.conductors[c],
+                                   found.emissivities[c, :, None] * found.areas[:, None] * found.value[c], rtol=1e-12, atol=1e-12)
+        assert same_bits(found.conductors[c], found.conductors[c].T)
+    program("matrix", CORNELL, "--accuracy", "1e-2", "--balance", "--exchange", tmp_path / "program.csv")
+    assert (tmp_path / "b.csv").read_bytes() == (tmp_path / "program.csv").read_bytes()

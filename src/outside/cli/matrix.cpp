@@ -2,6 +2,8 @@
 #include "exactff/matrix.h"
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <system_error>
@@ -11,9 +13,11 @@
 #include "cli/output.h"
 #include "cli/process.h"
 #include "cli/view_factor_words.h"
+#include "exactff/radiosity.h"
 #include "exactff/version.h"
 #include "flags/scene.h"
 #include "flags/values.h"
+#include "matrix/balanced.h"
 #include "matrix/row_facts.h"
 #include "matrix/row_on_faces.h"
 #include "matrix/team.h"
@@ -46,10 +50,42 @@ constexpr const char* kMatrixFooter =
     "names of patches as names of surfaces. Where fronts of two patches overlap in one plane, such as a window and\n"
     "its wall, both count in full and rows exceed 1: a warning names them, and neither file is written without\n"
     "--force.\n"
+    "--balance chooses the nearest matrix within all intervals in which A_i F_ij and A_j F_ji are the same double and\n"
+    "every row adds up to 1, to an ulp (the output says how far). If there is none, a warning names the rows or pairs\n"
+    "that prove it, and the exit code is 1. -o then has the column 'balanced', and the table and all other files have\n"
+    "its values.\n"
+    "--matrix FILE takes the entries from a file of `exactff matrix SCENE -o FILE`, with all columns that are needed.\n"
+    "--exchange FILE holds Gebhart's factors: of what a patch emits, the share that another one absorbs after all\n"
+    "bounces, with the emissivity 1 - Kd; backs and the sky are black. Bounds follow from those of the view factors,\n"
+    "values from the balanced matrix if --balance is given. 'conductor' is emissivity times area times this factor.\n"
     "\n"
     "Examples:\n"
     "  exactff matrix data/scenes/cornell_box.obj --from light --to 'floor,*_block' --accuracy 1e-4\n"
     "  exactff matrix data/scenes/formats/test4.vs3 --backs --to all,sky --npz build/factors.npz";
+
+// --- Files of other programs ---
+
+// Those that number surfaces, with what their files lose.
+struct ProgramFile {
+  const char *flag, *what, *help, *lost;
+  std::string (*text)(const Scene&, const matrix::Matrix&);
+  flags::Beside beside = flags::Beside::kNothing;
+};
+constexpr const char* kNumbers = "bounds and names; patches are numbered in the order of the rows";
+const std::array<ProgramFile, 5> kProgramFiles{{
+    {"--openfoam", "OpenFOAM file", "Write F as OpenFOAM's viewFactorsGen does, and globalFaceFaces beside it",
+     "bounds and names; coarse face k of the case must be patch k",
+     [](const Scene& scene, const matrix::Matrix& m) { return openfoam_files(scene, m).factors; },
+     flags::Beside::kFaceFaces},
+    {"--calculix", "CalculiX file", "Write the file (.vwf) that *VIEWFACTOR, READ of CalculiX 2.20 reads", kNumbers,
+     matrix::calculix_text},
+    {"--moose", "MOOSE file", "Write CSV as MOOSE's ViewFactorVectorPostprocessor does", kNumbers, matrix::moose_text},
+    {"--nek", "Nek5000 file", "Write view factors for Nek5000 and NekRS; a patch named 12:3 is face 3 of element 12",
+     kNumbers, matrix::nek_text},
+    {"--esatan", "ESATAN file", "Write the conductors as lines GR(1, 2) = ...; computes backs and the sky, too",
+     "bounds; comments have the names", nullptr},
+}};
+constexpr std::size_t kEsatan = kProgramFiles.size() - 1;
 
 constexpr std::size_t kMostShown = 12;  // rows and columns of the printed table
 
@@ -57,18 +93,33 @@ struct MatrixArguments {
   flags::SceneArguments scene;
   std::vector<std::string> from{"all"}, to{"all"}, two_sided;
   matrix::Options options;
-  bool plain = false;
-  std::string csv, npz, view3d, energyplus, vtk;
+  bool plain = false, balance = false;
+  std::string matrix;  // a file
+  std::string csv, npz, view3d, energyplus, vtk, exchange;
+  std::array<std::string, kProgramFiles.size()> programs;  // files of kProgramFiles
   std::string zone = "Zone 1";
   std::string shard;
   bool resume = false;
   bool force = false;
 
   [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
+  // Whether every row must have all that it sees.
+  [[nodiscard]] bool needs_all() const { return balance || exchanges(); }
+  [[nodiscard]] bool exchanges() const { return !exchange.empty() || !programs[kEsatan].empty(); }
+  [[nodiscard]] bool has_program_file() const {
+    return !view3d.empty() || !energyplus.empty() ||
+           std::ranges::any_of(programs, [](const std::string& file) { return !file.empty(); });
+  }
+  // Of --openfoam.
+  [[nodiscard]] std::filesystem::path face_faces() const {
+    return programs[0].empty() ? std::filesystem::path()
+                               : std::filesystem::path(programs[0]).replace_filename("globalFaceFaces");
+  }
   // A pipe or a device has no journal.
   [[nodiscard]] bool keeps_work() const {
     std::error_code ignored;
-    return !csv.empty() && (!std::filesystem::is_other(csv, ignored) || resume || !shard.empty());
+    return !csv.empty() && !balance && matrix.empty() &&
+           (!std::filesystem::is_other(csv, ignored) || resume || !shard.empty());
   }
 };
 
@@ -83,10 +134,12 @@ void for_each_entry(const Scene& scene, const matrix::Matrix& matrix, const Visi
   }
 }
 
-void print_plain(const Scene& scene, const matrix::Matrix& matrix) {
+void print_plain(const Scene& scene, const matrix::Matrix& matrix, bool with_values) {
   for_each_entry(scene, matrix, [&](std::size_t i, const std::string& to, const ViewFactor& f) {
     std::cout << shown_name(scene, matrix.factors.from[i]) << '\t' << to << '\t' << text::shortest(f.lower) << '\t'
-              << text::shortest(f.upper) << '\t' << to_string(f.claim) << '\t' << to_string(f.way) << '\n';
+              << text::shortest(f.upper) << '\t' << to_string(f.claim) << '\t' << to_string(f.way);
+    if (with_values) std::cout << '\t' << text::shortest(f.value);
+    std::cout << '\n';
   });
 }
 
@@ -181,10 +234,24 @@ void check_shard_and_resume(const MatrixArguments& args) {
     text::refuse(std::string(args.resume ? "--resume" : "--shard") + " is given without -o",
                  "finished pairs are kept beside the file of -o", "name a file, for example -o factors.csv");
   }
+  if ((args.balance || !args.matrix.empty()) && (args.resume || !args.shard.empty())) {
+    text::refuse(std::string(args.resume ? "--resume" : "--shard") + " is given with " +
+                     (args.balance ? "--balance" : "--matrix"),
+                 "finished pairs are kept of a matrix as it is computed",
+                 "compute it first by -o FILE, and then give --matrix FILE" +
+                     std::string(args.balance ? " --balance" : " without this flag"));
+  }
   if (args.shard.empty()) return;
+  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) {
+    if (args.programs[k].empty()) continue;
+    text::refuse(
+        std::string(kProgramFiles[k].flag) + " is given with --shard", "a shard has only a part of the entries",
+        "after exactff merge, run this command without --shard, with --resume and -o FILE for the merged file");
+  }
   for (const auto& [flag, given] :
        {std::pair("--plain", args.plain), std::pair("--npz", !args.npz.empty()), std::pair("--vtk", !args.vtk.empty()),
-        std::pair("--view3d", !args.view3d.empty()), std::pair("--energyplus", !args.energyplus.empty())}) {
+        std::pair("--exchange", !args.exchange.empty()), std::pair("--view3d", !args.view3d.empty()),
+        std::pair("--energyplus", !args.energyplus.empty())}) {
     if (!given) continue;
     text::refuse(
         std::string(flag) + " is given with --shard", "a shard has only a part of the entries",
@@ -199,9 +266,11 @@ void check_outputs(const MatrixArguments& args) {
   } else if (!args.csv.empty()) {
     require_free_file(args.csv, args.force);
   }
-  check_output_files(
-      {{"--npz", args.npz}, {"--view3d", args.view3d}, {"--energyplus", args.energyplus}, {"--vtk", args.vtk}},
-      args.existing() != jobs::Existing::kRefuse);
+  std::vector<files::NamedFile> files{
+      {"--npz", args.npz}, {"--view3d", args.view3d},     {"--energyplus", args.energyplus},
+      {"--vtk", args.vtk}, {"--exchange", args.exchange}, {"the faces of --openfoam", args.face_faces()}};
+  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) files.push_back({kProgramFiles[k].flag, args.programs[k]});
+  check_output_files(files, args.existing() != jobs::Existing::kRefuse);
 }
 
 void check_row_of_vtk(const MatrixArguments& args, const std::vector<Selection>& from,
@@ -212,30 +281,37 @@ void check_row_of_vtk(const MatrixArguments& args, const std::vector<Selection>&
                to.empty() ? "name patches by --to" : "name one patch by --from");
 }
 
-void write_files(const MatrixArguments& args, const Scene& scene, const matrix::Options& options,
-                 const matrix::Matrix& matrix) {
+void write_files(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
   const auto write_text = [](const std::string& file, const auto& text) {
     if (!file.empty()) write_whole_file(file, text());
   };
-  if (!args.keeps_work())
-    write_text(args.csv, [&] { return table::csv_text(table_of(scene, matrix, options.factors)); });
   if (!args.npz.empty()) write_npz(scene, matrix, args.npz);
   write_text(args.view3d, [&] { return view3d_text(scene, matrix); });
   write_text(args.energyplus, [&] { return energyplus_text(scene, matrix, args.zone); });
   if (!args.vtk.empty()) write_vtk(scene, matrix, args.vtk);
+  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) {
+    if (!args.programs[k].empty() && k != kEsatan) {
+      write_whole_file(args.programs[k], kProgramFiles[k].text(scene, matrix));
+    }
+  }
+  if (!args.programs[0].empty()) write_whole_file(args.face_faces(), openfoam_files(scene, matrix).faces);
   if (args.view3d.empty()) return;
   warn("View3D's output holds six decimals, no bounds and no names", "factors below 5e-7 become 0",
        "use -o or --npz where more is needed");
 }
 
 void print_files(const MatrixArguments& args) {
-  const std::vector<std::pair<const char*, const std::string*>> files = {{"Matrix", &args.csv},
-                                                                         {"NumPy file", &args.npz},
-                                                                         {"View3D file", &args.view3d},
-                                                                         {"EnergyPlus file", &args.energyplus},
-                                                                         {"VTK file", &args.vtk}};
+  const std::vector<std::pair<const char*, const std::string*>> files = {
+      {"Matrix", &args.csv},         {"NumPy file", &args.npz},
+      {"View3D file", &args.view3d}, {"EnergyPlus file", &args.energyplus},
+      {"VTK file", &args.vtk},       {"Exchange factors", &args.exchange}};
   for (const auto& [what, file] : files) {
     if (!file->empty()) std::cout << what << ": " << text::printable(*file) << '\n';
+  }
+  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) {
+    if (args.programs[k].empty()) continue;
+    std::cout << kProgramFiles[k].what << ": " << text::printable(args.programs[k]) << " (without "
+              << kProgramFiles[k].lost << ")\n";
   }
 }
 
@@ -243,8 +319,8 @@ void print_files(const MatrixArguments& args) {
 void check_overlaps(const MatrixArguments& args, const Scene& scene, const std::vector<Selection>& to) {
   std::optional<Problem> overlaps = problem_of_overlaps(scene, to);
   if (!overlaps) return;
-  if (!args.force && !(args.view3d.empty() && args.energyplus.empty())) {
-    overlaps->why = "a file for EnergyPlus or View3D with such rows makes energy, and was not written";
+  if (!args.force && args.has_program_file()) {
+    overlaps->why = "a file for another program with such rows makes energy, and was not written";
     overlaps->suggestion += "; --force writes it all the same";
     throw InputError(std::move(*overlaps));
   }
@@ -256,9 +332,16 @@ void check_content(const MatrixArguments& args, const Scene& scene, const std::v
                    const std::vector<Selection>& to) {
   check_row_of_vtk(args, from, to);
   check_overlaps(args, scene, to);
-  const matrix::Matrix empty{{from, to, std::vector<ViewFactor>(from.size() * to.size())}, {}, {}, {}};
+  matrix::Matrix empty{{from, to, std::vector<ViewFactor>(from.size() * to.size())}, {}, {}, {}};
   if (!args.view3d.empty()) (void)view3d_text(scene, empty);
   if (!args.energyplus.empty()) (void)energyplus_text(scene, empty, args.zone);
+  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) {
+    if (!args.programs[k].empty() && k != kEsatan) (void)kProgramFiles[k].text(scene, empty);
+  }
+  if (!args.balance) return;
+  empty.back.resize(from.size());
+  empty.open.resize(from.size());
+  require_balanceable(scene, empty);
 }
 
 // A request and the scene that it refers to.
@@ -274,7 +357,8 @@ std::unique_ptr<MatrixJob> job_of(const MatrixArguments& args, const jobs::Team*
   matrix::Request& request = job->request;
   request.scene = &job->scene;
   request.options = args.options;
-  request.options.open = flags::take_sky(job->scene, to);
+  request.options.open = flags::take_sky(job->scene, to) || args.needs_all();
+  request.options.backs = args.options.backs || args.needs_all();
   if (args.options.threads == 0 && team != nullptr) request.options.threads = jobs::fair_threads(*team);
   request.from = flags::selections_named(job->scene, args.from);
   request.to = flags::selections_named(job->scene, to);
@@ -283,7 +367,10 @@ std::unique_ptr<MatrixJob> job_of(const MatrixArguments& args, const jobs::Team*
   return job;
 }
 
-matrix::Matrix compute(const MatrixJob& job) {
+matrix::Matrix compute(const MatrixArguments& args, MatrixJob& job) {
+  if (!args.matrix.empty()) {
+    return matrix_in_file(args.matrix, job.scene, job.request.from, job.request.to, job.request.options.factors);
+  }
   const InterruptWatch watch("exactff: interrupted; nothing was written\n");
   LateNote note(words_on_speed(job.request));
   ProgressBar bar;
@@ -300,26 +387,72 @@ void print_summary(const MatrixArguments& args, const jobs::Summary& summary) {
   check_output(std::cout);
 }
 
+void print_balanced(const matrix::Matrix& matrix, const matrix::Balanced& balanced) {
+  double most = 0.0, share = 0.0;
+  const auto compare = [&](const ViewFactor& f, double value) {
+    const double moved = std::abs(value - f.value);
+    most = std::max(most, moved);
+    if (moved > 0.0 && f.upper > f.lower) share = std::max(share, moved / (f.upper - f.lower));
+  };
+  for (std::size_t k = 0; k < balanced.entries.size(); ++k) compare(matrix.factors.entries[k], balanced.entries[k]);
+  for (std::size_t i = 0; i < balanced.back.size(); ++i) compare(matrix.back[i], balanced.back[i]);
+  for (std::size_t i = 0; i < balanced.open.size(); ++i) compare(matrix.open[i], balanced.open[i]);
+  std::cout << "Balanced: entries moved by at most " << text::short_number(most, 2) << ", "
+            << text::short_number(share, 2)
+            << " of the widths of their intervals; in every pair the products A_i F_ij and\n"
+            << "A_j F_ji are the same double; the rows add up to 1 within " << text::short_number(balanced.furthest, 2)
+            << ".\n\n";
+}
+
+// Returns whether all of them have bounds.
+bool write_exchange(const MatrixArguments& args, const MatrixJob& job, const matrix::Matrix& matrix) {
+  ProgressBar bar;
+  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const radiosity::Exchange found = radiosity::exchange(job.scene, matrix, job.request.options.threads, hooks);
+  bar.clear();
+  if (!args.exchange.empty()) table::write(table_of(job.scene, found, job.request.options.factors), args.exchange);
+  if (!args.programs[kEsatan].empty()) write_whole_file(args.programs[kEsatan], esatan_text(job.scene, found));
+  for (const radiosity::Exchange::Channel& channel : found.channels) {
+    if (channel.is_bounded()) continue;
+    warn("some exchange factors have no bound", channel.no_bound, channel.remedy);
+    return false;
+  }
+  return true;
+}
+
 // The values of the finished file, or of no file at all.
-int finish(const MatrixArguments& args, const MatrixJob& job, const matrix::Matrix& matrix) {
+int finish(const MatrixArguments& args, const MatrixJob& job, matrix::Matrix matrix) {
   const matrix::Options& options = job.request.options;
   const std::vector<Problem> wide = problems_of_width(job.scene, matrix, options.factors);
   print_warnings(wide);
-  write_files(args, job.scene, options, matrix);
-  args.plain ? print_plain(job.scene, matrix) : print_table(job.scene, matrix);
+  std::optional<matrix::Balanced> balanced;
+  if (args.balance) {
+    balanced = matrix::balanced(job.scene, matrix);
+    print_warnings(problems_of(job.scene, matrix, *balanced));
+    if (!balanced->is_found()) return balanced->is_impossible() ? 1 : kNotAsAsked;
+  }
+  if (!args.keeps_work() && !args.csv.empty()) {
+    write_whole_file(args.csv, csv_text(table_of(job.scene, matrix, options.factors, balanced ? &*balanced : nullptr)));
+  }
+  if (balanced && !args.plain) print_balanced(matrix, *balanced);
+  if (balanced) matrix = with_values(std::move(matrix), *balanced);
+  write_files(args, job.scene, matrix);
+  const bool bounded = !args.exchanges() || write_exchange(args, job, matrix);
+  args.plain ? print_plain(job.scene, matrix, args.balance) : print_table(job.scene, matrix);
   const bool rows_hold = test_rows(args, job.scene, matrix),
              directions_agree = test_reciprocity(args, job.scene, matrix);
   if (!args.plain) print_files(args);
   check_output(std::cout);
   if (!rows_hold || !directions_agree) return 1;
-  return wide.empty() ? 0 : kNotAsAsked;
+  return wide.empty() && bounded ? 0 : kNotAsAsked;
 }
 
 int write(const MatrixArguments& args, jobs::Team* team) {
   check_outputs(args);
   if (!args.keeps_work()) {
     const std::unique_ptr<MatrixJob> job = job_of(args, nullptr);
-    return finish(args, *job, compute(*job));
+    matrix::Matrix matrix = compute(args, *job);
+    return finish(args, *job, std::move(matrix));
   }
   Narrator narrator("pair");
   jobs::Summary summary;
@@ -380,12 +513,20 @@ void add_outputs(CLI::App& command, MatrixArguments& args) {
       ->capture_default_str();
   flags::add_written(command, "--vtk", args.vtk,
                      "Write the one row that --from names, on the scene, as NAME.vtp or NAME.vtu", flags::Format::kVtk);
+  flags::add_written(command, "--exchange", args.exchange,
+                     "Write exchange factors over all bounces and radiative conductors, with bounds, as CSV, .npz or "
+                     ".jsonl; computes backs and the sky, too",
+                     flags::Format::kTable);
+  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) {
+    const ProgramFile& one = kProgramFiles[k];
+    flags::add_written(command, one.flag, args.programs[k], one.help, flags::Format::kProgram, one.beside);
+  }
   command.add_option("--shard", args.shard, "Compute only part I of N, for exactff merge: 1/4 is the first of four")
       ->type_name("I/N");
   CLI::Option* resume = command.add_flag("--resume", args.resume, "Continue an interrupted run, if there is one");
   command
       .add_flag("--force", args.force,
-                "Start again and replace existing files; write those for EnergyPlus and View3D even if fronts overlap")
+                "Start again and replace existing files; write those for other programs even if fronts overlap")
       ->excludes(resume);
 }
 
@@ -407,16 +548,29 @@ Command add_matrix(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces");
   command->add_option("--two-sided", args->two_sided, kTwoSidedHelp)->type_name("NAME");
-  command->add_flag("--both-directions", args->options.factors.both_directions,
-                    "Compute F_ij and F_ji apart, and compare A_i F_ij with A_j F_ji");
-  command->add_option("--accuracy", args->options.factors.accuracy, "Largest width of an entry, for F_ij and for F_ji")
-      ->capture_default_str();
-  command->add_option("--budget", args->options.factors.budget, kBudgetHelp)
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
-      ->capture_default_str();
-  add_claim(*command, args->options.factors.certify);
-  command->add_flag("--plain", args->plain,
-                    "Print a line for each entry: FROM, TO, LOWER, UPPER, CLAIM, WAY, with tabs");
+  CLI::Option* both = command->add_flag("--both-directions", args->options.factors.both_directions,
+                                        "Compute F_ij and F_ji apart, and compare A_i F_ij with A_j F_ji");
+  CLI::Option* accuracy =
+      command
+          ->add_option("--accuracy", args->options.factors.accuracy, "Largest width of an entry, for F_ij and for F_ji")
+          ->capture_default_str();
+  CLI::Option* budget = command->add_option("--budget", args->options.factors.budget, kBudgetHelp)
+                            ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
+                            ->capture_default_str();
+  const ClaimOptions claims = add_claim(*command, args->options.factors.certify);
+  flags::add_read(*command, "--matrix", args->matrix, "Take the entries from this file of exactff matrix")
+      ->excludes(accuracy)
+      ->excludes(budget)
+      ->excludes(claims.claim)
+      ->excludes(claims.certify)
+      ->excludes(both);
+  command->add_flag(
+      "--balance", args->balance,
+      "Choose values within all intervals so that A_i F_ij = A_j F_ji and every row adds up to 1; computes "
+      "backs and the sky, too");
+  command->add_flag(
+      "--plain", args->plain,
+      "Print a line for each entry: FROM, TO, LOWER, UPPER, CLAIM, WAY, with tabs; by --balance also VALUE");
   add_outputs(*command, *args);
   command
       ->add_option("--threads", args->options.threads,

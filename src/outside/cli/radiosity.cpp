@@ -57,6 +57,11 @@ constexpr const char* kRadiosityFooter =
     "The balance is printed as bounds [lower, upper]; a number alone is rounded to six digits. Lost light meets\n"
     "backs or leaves (open). One of the two is known where the other is proved to be zero. Elsewhere --backs\n"
     "computes what meets backs; a matrix made with --backs --to all,sky has both.\n"
+    "--temperatures FILE solves the exchange of sigma T^4 between gray surfaces of emissivity 1 - Kd. Each patch has "
+    "a\n"
+    "row with its T in K, or with the heat Q in W that it gives off, 0 for one that only reflects and emits again. "
+    "The\n"
+    "rows (back) and (open) may have a T, which is else 0 K. Values are by the balanced matrix, if there is one.\n"
     "\n"
     "Examples:\n"
     "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4\n"
@@ -72,7 +77,8 @@ struct RadiosityArguments {
   std::optional<double> accuracy;
   bool plain = false, json = false, csv = false;
   std::string output, vtk;
-  std::string matrix;  // a file
+  std::string matrix;        // a file
+  std::string temperatures;  // likewise, of conditions
   bool resume = false, force = false;
 
   [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
@@ -84,7 +90,7 @@ struct RadiosityArguments {
   }
   [[nodiscard]] bool keeps_work() const {
     std::error_code ignored;
-    return !output.empty() && matrix.empty() && !std::filesystem::is_other(output, ignored);
+    return !output.empty() && matrix.empty() && temperatures.empty() && !std::filesystem::is_other(output, ignored);
   }
   [[nodiscard]] std::string kept_factors() const { return flags::kept_factors_of(output); }
   [[nodiscard]] std::string kept_again() const { return flags::kept_again_of(output); }
@@ -342,12 +348,6 @@ void print(const RadiosityArguments& args, const Scene& scene, const Solution& s
   }
 }
 
-void require_matrix_of(const Scene& scene, const matrix::NamedMatrix& matrix) {
-  if (matrix.head.text("scene_hash") == scene.hash()) return;
-  text::refuse(std::filesystem::path(matrix.file), "holds the view factors of another scene",
-               "its head has another hash", "give the same scene, with the same --divide, --two-sided and --patches");
-}
-
 // Nothing if it was interrupted.
 std::optional<matrix::Matrix> kept_view_factors(const RadiosityArguments& args, const matrix::Request& request) {
   const std::string file = args.kept_factors();
@@ -371,12 +371,7 @@ std::optional<matrix::Matrix> view_factors_of(const RadiosityArguments& args, co
     return kept_view_factors(args,
                              {.scene = &scene, .from = patches, .to = patches, .options = of_matrix, .shard = {}});
   }
-  matrix::NamedMatrix named = matrix::read_named(args.matrix);
-  require_matrix_of(scene, named);
-  options = matrix::options_of(named.head);
-  const matrix::Options as_there{.factors = options, .backs = !named.back.empty(), .open = !named.open.empty()};
-  return matrix::matrix_of({.scene = &scene, .from = patches, .to = patches, .options = as_there, .shard = {}},
-                           std::move(named));
+  return matrix_in_file(args.matrix, scene, patches, patches, options);
 }
 
 // Solves, and computes view factors again where a width is wanted.
@@ -467,12 +462,85 @@ int finish_again(const RadiosityArguments& args, const Scene& scene) {
   return exit_code_of(solution);
 }
 
+// --- Temperatures ---
+
+std::string bounded_text(const BoundedValue& q) {
+  return q.lower == q.upper ? text::shortest(q.value) : text::interval(q.lower, q.upper);
+}
+
+void print_temperatures(const Scene& scene, const radiosity::Temperatures& found) {
+  TextTable table;
+  table.add_column("patch");
+  table.add_columns({"T / K", "lower", "upper", "Q / W", "lower", "upper"});
+  const std::size_t count = std::min(found.patches.size(), kMostPatchesShown);
+  for (std::size_t i = 0; i < count; ++i) {
+    const BoundedValue &t = found.temperatures[i], &q = found.heats[i];
+    table.add_row({shown_name(scene, found.patches[i]), text::short_number(t.value, 6), text::shortest(t.lower),
+                   text::shortest(t.upper), text::short_number(q.value, 6), text::shortest(q.lower),
+                   text::shortest(q.upper)});
+  }
+  table.print(std::cout);
+  if (count < found.patches.size()) {
+    std::cout << "\n(the first " << count << " of " << found.patches.size() << " patches; --csv and -o have all)\n";
+  }
+  std::cout << "\nBalance: " << text::short_number(found.unbalanced.value, 2)
+            << " W of all heat is unaccounted for, within " << bounded_text(found.unbalanced)
+            << " by the bounds.\nHeat to (back): " << bounded_text(found.to_back)
+            << " W, to (open): " << bounded_text(found.to_open)
+            << " W. The bounds hold if those of the view factors do: " << to_string(found.claim) << ".\n";
+}
+
+// Values by the balanced matrix, if there is one: then no heat is made.
+void balance_if_possible(const Scene& scene, matrix::Matrix& matrix) {
+  if (!reasons_against_one(scene, matrix).empty()) return;
+  const matrix::Balanced balanced = matrix::balanced(scene, matrix);
+  if (balanced.is_found()) matrix = with_values(std::move(matrix), balanced);
+}
+
+int run_temperatures(const RadiosityArguments& args, const Scene& scene) {
+  if (!args.vtk.empty()) {
+    text::refuse("--vtk is given with --temperatures", "that file shows radiosities", "write a table by -o");
+  }
+  const std::vector<Selection> patches = radiosity::patches_of(scene);
+  const radiosity::ThermalConditions conditions = radiosity::read_conditions(scene, args.temperatures);
+  ViewFactorOptions options = args.options.factors;
+  ProgressBar bar;
+  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  matrix::Matrix matrix =
+      args.matrix.empty()
+          ? matrix::compute(scene, patches, patches,
+                            {.factors = options, .backs = true, .open = true, .threads = args.options.threads}, hooks)
+          : matrix_in_file(args.matrix, scene, patches, patches, options);
+  bar.clear();
+  const std::vector<Problem> wide = problems_of_width(scene, matrix, options);
+  print_warnings(wide);
+  balance_if_possible(scene, matrix);
+  const radiosity::Temperatures found = radiosity::temperatures(scene, matrix, conditions);
+  if (!found.is_bounded()) {
+    print_warnings(std::vector<Problem>{{.what = "temperatures have no bound, and none is printed",
+                                         .why = found.no_bound,
+                                         .suggestion = found.remedy}});
+    return kNotAsAsked;
+  }
+  const table::Table table = table_of(scene, found, options);
+  if (!args.output.empty()) write_whole_file(args.output, table::csv_text(table));
+  if (args.csv) {
+    std::cout << table::csv_text(table);
+  } else {
+    print_temperatures(scene, found);
+    if (!args.output.empty()) std::cout << "Temperatures: " << text::printable(args.output) << '\n';
+  }
+  check_output(std::cout);
+  return wide.empty() ? 0 : kNotAsAsked;
+}
+
 int run(const RadiosityArguments& given) {
   RadiosityArguments args = given;
   if (args.options.width) args.options.factors.accuracy = radiosity::accuracy_for(*args.options.width);
   if (args.accuracy) args.options.factors.accuracy = *args.accuracy;
   check_outputs(args);
   const Scene scene = load(args.scene, args.two_sided);
+  if (!args.temperatures.empty()) return run_temperatures(args, scene);
   if (args.resume && args.is_complete()) return finish_again(args, scene);
   const std::vector<Selection> patches = radiosity::patches_of(scene);
   require_light(args, scene, patches);
@@ -555,6 +623,13 @@ Command add_radiosity(CLI::App& app) {
       ->excludes(claims.claim)
       ->excludes(claims.certify);
   add_outputs(*command, *args);
+  CLI::Option* temperatures = flags::add_read(
+      *command, "--temperatures", args->temperatures,
+      "Compute temperatures and heats instead: a CSV file with patch, T (in K) or Q (in W); the scene is in "
+      "metres");
+  for (const char* other : {"--width", "--json", "--plain", "--resume"}) {
+    temperatures->excludes(command->get_option(other));
+  }
   command
       ->add_option("--threads", args->options.threads,
                    "Number of threads (default: all); it does not affect the values")

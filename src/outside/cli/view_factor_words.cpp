@@ -13,6 +13,7 @@
 #include "text/escape.h"
 #include "text/names.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "text/text_lines.h"
 
 namespace exactff::cli {
@@ -127,6 +128,19 @@ std::optional<Problem> problem_of_overlaps(const Scene& scene, std::span<const S
   std::erase_if(overlaps, [](const slips::Overlap& one) { return one.apart > 0.0; });
   if (overlaps.empty()) return std::nullopt;
   return slips::warning_of_overlaps(scene, overlaps);
+}
+
+matrix::Matrix matrix_in_file(const std::string& file, const Scene& scene, const std::vector<Selection>& from,
+                              const std::vector<Selection>& to, ViewFactorOptions& options) {
+  matrix::NamedMatrix named = matrix::read_named(file);
+  if (named.head.text("scene_hash") != scene.hash()) {
+    text::refuse(std::filesystem::path(named.file), "holds the view factors of another scene",
+                 "its head has another hash", "give the same scene, with the same --divide, --two-sided and --patches");
+  }
+  options = matrix::options_of(named.head);
+  const matrix::Options as_there{.factors = options, .backs = !named.back.empty(), .open = !named.open.empty()};
+  return matrix::matrix_of({.scene = &scene, .from = from, .to = to, .options = as_there, .shard = {}},
+                           std::move(named));
 }
 
 ClaimOptions add_claim(CLI::App& command, bool& certify) {

@@ -23,6 +23,12 @@ namespace exactff::cli {
 // computed.
 [[nodiscard]] std::optional<Problem> problem_of_overlaps(const Scene& scene, std::span<const Selection> columns);
 
+// The matrix in a file of exactff matrix; `options` become those of the file. Throws InputError if it is of another
+// scene, or of other patches.
+[[nodiscard]] matrix::Matrix matrix_in_file(const std::string& file, const Scene& scene,
+                                            const std::vector<Selection>& from, const std::vector<Selection>& to,
+                                            ViewFactorOptions& options);
+
 // The flags --claim and --certify, which is short for --claim certified.
 struct ClaimOptions {
   CLI::Option *claim = nullptr, *certify = nullptr;

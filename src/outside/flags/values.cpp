@@ -198,6 +198,8 @@ const std::vector<NamedFormat>& formats() {
       {Format::kXml, "XML", {".xml"}},
       {Format::kView3d, "View3D's output"},
       {Format::kEnergyPlus, "objects of EnergyPlus", {".idf"}},
+      {Format::kProgram, "numbers of another program"},
+      {Format::kTable, "a table", {".csv", ".npz", ".jsonl"}},
       {Format::kImage, "an image", {".exr", ".png"}},
       {Format::kScene, "a scene", {".obj", ".ply", ".stl", ".off", ".vs3"}},
       {Format::kMesh, "a mesh", {".obj", ".ply", ".stl", ".off", ".vs3", ".vtp", ".vtu"}},
@@ -286,6 +288,9 @@ void add_beside(const CLI::App& command, const GivenFile& one, std::vector<Named
       add_whole("the view factors of " + called, kept_factors_of(file), written);
       add_journal("the view factors of " + called, kept_factors_of(file), written);
       add_journal("the view factors that " + called + " computes again", kept_again_of(file), written);
+      break;
+    case Beside::kFaceFaces:
+      add_whole("the faces of " + called, file.parent_path() / "globalFaceFaces", written);
       break;
     case Beside::kScene:
       add_whole("the scene of " + called, vtk::scene_file(file), written);

@@ -84,7 +84,9 @@ enum class Format {
   kXml,
   kView3d,
   kEnergyPlus,
-  kImage,  // EXR or PNG
+  kProgram,  // numbers of another program, by any name
+  kTable,    // CSV, .npz or .jsonl
+  kImage,    // EXR or PNG
   kScene,
   kMesh,  // a scene, or VTK
 };
@@ -94,6 +96,7 @@ enum class Beside {
   kNothing,
   kJournal,      // FILE.part, until FILE is complete
   kViewFactors,  // of `exactff radiosity`: FILE.factors and its journal, FILE.again.part
+  kFaceFaces,    // globalFaceFaces in the same folder
   kScene,        // NAME_scene.vtp of NAME.vtp
   kMaterials,    // NAME.mtl of NAME.obj
 };

@@ -9,6 +9,7 @@
 #include "exactff/radiosity.h"
 #include "exactff/slips.h"
 #include "exactff/view.h"
+#include "matrix/balanced.h"
 #include "matrix/row_on_faces.h"
 #include "python/bindings.h"
 #include "radiosity/narrowing.h"
@@ -63,13 +64,65 @@ class MadeMatrix {
     const Scene& scene = shared_->scene();
     if (extension == ".npz") return matrix::write_npz(scene, made_, path);
     if (extension == ".vtp" || extension == ".vtu") return write_row(path);
-    if (extension == ".csv")
-      return write_whole_files({{path, table::csv_text(matrix::table_of(scene, made_, options_))}});
+    if (extension == ".csv") return write_whole_files({{path, csv_text()}});
     refuse_overlaps(path);
     write_whole_files({{path, extension == ".idf" ? energyplus_text(scene, made_, zone) : view3d_text(scene, made_)}});
   }
 
+  // The same with balanced values; that of rows, and the largest distance of a row from 1.
+  [[nodiscard]] py::tuple balanced() const {
+    matrix::Balanced found;
+    auto result = std::make_shared<MadeMatrix>(*this);
+    {
+      const py::gil_scoped_release released;
+      found = matrix::balanced(shared_->scene(), made_);
+      if (std::vector<Problem> problems = problems_of(shared_->scene(), made_, found); !problems.empty()) {
+        throw InputError(std::move(problems));
+      }
+      result->unbalanced_ = std::make_shared<const matrix::Matrix>(made_);
+      result->made_ = with_values(std::move(result->made_), found);
+    }
+    const py::tuple lists =
+        py::make_tuple(to_array(found.entries), to_array(found.back), to_array(found.open), to_array(found.buried));
+    const double furthest = found.furthest;
+    result->balanced_ = std::make_shared<const matrix::Balanced>(std::move(found));
+    return lists + py::make_tuple(furthest, result);
+  }
+
+  // For each channel: factors, back, open, conductors, those to back and to open, each (k, 3): value, lower, upper;
+  // then emissivities and the reason for no bound. The claim; the CSV file, in `path` if it is not empty.
+  [[nodiscard]] py::tuple exchange(int threads, const std::filesystem::path& path, const py::object& progress) const {
+    const Scene& scene = shared_->scene();
+    Interrupt interrupt(progress);
+    const radiosity::Exchange found =
+        interrupt.run([&] { return radiosity::exchange(scene, made_, threads, interrupt.hooks()); });
+    if (!path.empty()) table::write(table_of(scene, found, options_), path);
+    py::list channels;
+    for (const radiosity::Exchange::Channel& c : found.channels) {
+      channels.append(py::make_tuple(to_array(c.factors), to_array(c.back), to_array(c.open), to_array(c.conductors),
+                                     to_array(c.conductors_to_back), to_array(c.conductors_to_open),
+                                     to_array(c.emissivities), c.no_bound));
+    }
+    return py::make_tuple(channels, std::string(to_string(found.claim)), found.areas);
+  }
+
  private:
+  static Numbers to_array(const std::vector<radiosity::BoundedValue>& values) {
+    Numbers array({values.size(), std::size_t{3}});
+    auto entry = array.mutable_unchecked<2>();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto row = static_cast<py::ssize_t>(i);
+      entry(row, 0) = values[i].value, entry(row, 1) = values[i].lower, entry(row, 2) = values[i].upper;
+    }
+    return array;
+  }
+  static Numbers to_array(const std::vector<double>& values) {
+    return Numbers(static_cast<py::ssize_t>(values.size()), values.data());
+  }
+  [[nodiscard]] std::string csv_text() const {
+    const matrix::Matrix& values = unbalanced_ ? *unbalanced_ : made_;
+    return table::csv_text(table_of(shared_->scene(), values, options_, balanced_.get()));
+  }
   void write_row(const std::filesystem::path& path) const {
     if (made_.factors.from.size() != 1 || made_.factors.to.empty()) {
       text::refuse(path, "shows one row on the patches of the scene",
@@ -92,6 +145,8 @@ class MadeMatrix {
   std::shared_ptr<const SharedScene> shared_;
   matrix::Matrix made_;
   ViewFactorOptions options_;
+  std::shared_ptr<const matrix::Matrix> unbalanced_;  // null unless `made_` is balanced
+  std::shared_ptr<const matrix::Balanced> balanced_;
 };
 
 // Entries row by row, backs, what is open, what is buried, sums of rows (lower, upper), reasons
@@ -158,6 +213,8 @@ py::tuple view_of(const SharedScene& scene, const std::array<double, 3>& point, 
 
 void bind_view_factors(py::module_& module) {
   py::class_<MadeMatrix, std::shared_ptr<MadeMatrix>>(module, "MadeMatrix")
+      .def("balanced", &MadeMatrix::balanced)
+      .def("exchange", &MadeMatrix::exchange, py::arg("threads"), py::arg("path"), py::arg("progress"))
       .def("write", &MadeMatrix::write, py::arg("path"), py::arg("extension"), py::arg("zone"));
   module.def("view_factor", &view_factor_of, py::arg("scene"), py::arg("from_patch"), py::arg("to_patch"),
              py::arg("accuracy"), py::arg("budget"), py::arg("certify"));

@@ -81,6 +81,17 @@ const table::Fields<Entry>& columns() {
   return all;
 }
 
+const table::Fields<Entry>& columns_with_balanced() {
+  static const table::Fields<Entry> all("matrix", [] {
+    std::vector<Field> fields = columns().all();
+    const auto after_upper = std::ranges::find(fields, "claim", [](const Field& field) { return field.column.name; });
+    fields.insert(after_upper,
+                  table::member_field<&Entry::balanced, Entry>({.name = "balanced", .strength = Strength::kEstimated}));
+    return fields;
+  }());
+  return all;
+}
+
 void set_options(table::Head& head, const ViewFactorOptions& options) {
   head.set("accuracy", options.accuracy);
   head.set("budget", std::uint64_t{options.budget});
@@ -120,23 +131,29 @@ table::Head head_of(const Scene& scene, std::span<const Selection> from, std::sp
 
 // --- Tables ---
 
-table::Table table_of(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options) {
+table::Table table_of(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options,
+                      const Balanced* balanced) {
   const Factors& all = matrix.factors;
   const Surroundings surroundings{!matrix.back.empty(), !matrix.open.empty(), !matrix.buried.empty()};
-  table::Table table("matrix", head_of(scene, all.from, all.to, options, surroundings), columns().columns());
+  const table::Fields<Entry>& fields = balanced != nullptr ? columns_with_balanced() : columns();
+  table::Table table("matrix", head_of(scene, all.from, all.to, options, surroundings), fields.columns());
   Entry entry;
-  const auto add = [&](std::string_view to, const ViewFactor& factor, bool has_area_to) {
+  const auto add = [&](std::string_view to, const std::vector<ViewFactor>& factors,
+                       std::vector<double> Balanced::*values, std::size_t k, bool has_area_to) {
     entry.to = to;
-    entry.factor = factor;
+    entry.factor = factors[k];
+    entry.balanced = balanced != nullptr ? (balanced->*values)[k] : 0.0;
     entry.has_area_to = has_area_to;
-    columns().append(entry, table);
+    fields.append(entry, table);
   };
   for (std::size_t i = 0; i < all.from.size(); ++i) {
     entry.from = scene.name_of(all.from[i]);
-    for (std::size_t j = 0; j < all.to.size(); ++j) add(scene.name_of(all.to[j]), all.at(i, j), true);
-    if (surroundings.back) add(kBack, matrix.back[i], true);
-    if (surroundings.open) add(kOpen, matrix.open[i], false);
-    if (surroundings.buried) add(kBuried, matrix.buried[i], false);
+    for (std::size_t j = 0; j < all.to.size(); ++j) {
+      add(scene.name_of(all.to[j]), all.entries, &Balanced::entries, i * all.to.size() + j, true);
+    }
+    if (surroundings.back) add(kBack, matrix.back, &Balanced::back, i, true);
+    if (surroundings.open) add(kOpen, matrix.open, &Balanced::open, i, false);
+    if (surroundings.buried) add(kBuried, matrix.buried, &Balanced::buried, i, false);
   }
   return table;
 }

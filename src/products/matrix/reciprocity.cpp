@@ -3,14 +3,13 @@
 
 #include "exactff/matrix.h"
 #include "kernel/float_environment.h"
+#include "matrix/row_facts.h"
 
 namespace exactff::matrix {
 namespace {
 
 using kernel::above;
 using kernel::below;
-
-constexpr double kRoundedAreas = 0x1p-44;  // relative; as in view_factors/pairs.cpp
 
 // A F / M, where M is the larger area: the factor from the larger patch.
 struct Exchange {

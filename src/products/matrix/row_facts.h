@@ -10,6 +10,9 @@
 
 namespace exactff::matrix {
 
+// Relative error of an area as a double; as in view_factors/pairs.cpp.
+inline constexpr double kRoundedAreas = 0x1p-44;
+
 // The area of a row's patch. Requires a column, or back, open or buried.
 [[nodiscard]] double area_of_row(const Matrix& matrix, std::size_t row);
 

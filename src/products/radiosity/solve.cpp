@@ -86,7 +86,8 @@ std::string words_of_white(const Scene& scene, const std::vector<Selection>& pat
   return text::enumerate(names);
 }
 
-// Why there is no bound, and what would give one.
+}  // namespace
+
 Problem problem_of_unbounded(const Scene& scene, const std::vector<Selection>& patches, const System& system) {
   constexpr double kMuchLight = 1e300;
   const std::string narrower = "compute narrower view factors by --accuracy, --width or --budget";
@@ -106,6 +107,8 @@ Problem problem_of_unbounded(const Scene& scene, const std::vector<Selection>& p
               "arrives",
           .suggestion = narrower};
 }
+
+namespace {
 
 double estimated_irradiance(std::span<const Entry> row, const Numbers& value) {
   if (value.empty()) return kUnknown;

@@ -31,6 +31,7 @@
 #include <span>
 #include <vector>
 
+#include "exactff/error.h"
 #include "exactff/matrix.h"
 #include "exactff/scene.h"
 
@@ -89,6 +90,10 @@ class Exposed {
   const matrix::Matrix& given_;
   std::optional<matrix::Matrix> made_;
 };
+
+// Why there is no bound, and what would give one.
+[[nodiscard]] Problem problem_of_unbounded(const Scene& scene, const std::vector<Selection>& patches,
+                                           const System& system);
 
 // Of a channel (kChannelNames).
 [[nodiscard]] System system_of(const Scene& scene, const matrix::Factors& factors, std::size_t channel);

@@ -149,6 +149,9 @@ _Apart = tuple[int, int, float, float]
 _Share = tuple[float, float, float, int]
 
 class MadeMatrix:
+    def exchange(self, threads: int, path: _Path, progress: _Tell) -> tuple[
+        list[tuple[_Floats, _Floats, _Floats, _Floats, _Floats, _Floats, _Floats, str]], str, list[float]]: ...
+    def balanced(self) -> tuple[_Floats, _Floats, _Floats, _Floats, float, MadeMatrix]: ...
     def write(self, path: _Path, extension: str, zone: str) -> None: ...
 
 def view_factor(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Callable, Iterator, Literal, Mapping, NamedTuple, Optional
 
 import numpy as np
@@ -111,12 +111,91 @@ class ViewFactorMatrix:
         require_free(path, existing, self._read)
         self._made.write(os.fspath(path), extension, zone)
 
+    def balanced(self) -> ViewFactorMatrix:
+        """The nearest matrix in which every value, also of ``back``, ``open`` and ``buried``, lies in its interval, and
+
+        - ``areas[i] * value[i, j] == areas[j] * value[j, i]`` in every bit,
+        - the exact sum of a row, with ``back``, ``open`` and ``buried``, is 1 to within 2^-52, one ulp, or to a few
+          ulps in rows of two or three entries; ``math.fsum`` nearly always gives 1.0.
+
+        Values depend neither on threads nor on the order of the patches, but on their names. Needs the same patches as rows
+        and columns, with `backs` and `sky`. Raises InputError where rows need not add up to 1, with
+        ``reasons_against_one``; and where there is no such matrix, with the rows or pairs whose intervals prove it.
+        ``save`` then writes these values, and ``.csv`` both."""
+        if self._made is None:
+            refuse("the matrix was copied or pickled", "a copy has the numbers alone", "balance the first one")
+        entries, back, free, below, _, made = self._made.balanced()
+        n = len(self.from_names)
+
+        def with_values(row: Optional[tuple[ViewFactor, ...]], values: Floats) -> Optional[tuple[ViewFactor, ...]]:
+            return None if row is None else tuple(f._replace(value=v) for f, v in zip(row, values.tolist()))
+
+        value = entries.reshape(n, n)
+        rows = tuple(tuple(f._replace(value=v) for f, v in zip(*row)) for row in zip(self._entries, value.tolist()))
+        return replace(self, value=value, back=with_values(self.back, back), open=with_values(self.open, free),
+                       buried=with_values(self.buried, below), _entries=rows, _made=made)
+
+    def exchange(self, *, save: Optional[Path] = None, existing: Literal["refuse", "replace"] = "refuse",
+                 threads: int = 0, progress: Progress = None) -> ExchangeFactors:
+        """Gebhart's exchange factors over all bounces, and radiative conductors, with the emissivity 1 - Kd.
+
+        Needs the factors between all patches. Bounds follow from those of the matrix; values are estimates by its values,
+        so those of ``matrix.balanced().exchange()`` have rows that add up to 1, with ``back`` and ``open``, which are black.
+        `save` names a CSV, .npz or .jsonl file that is written. Raises InputError for other patches and for a Kd above 1;
+        a channel without a bound is a ModellingWarning."""
+        check_existing(existing)
+        if self._made is None:
+            refuse("the matrix was copied or pickled", "a copy has the numbers alone", "use the first one")
+        if save is not None:
+            require_free(save, existing, self._read)
+        with shown(progress, "exchange factor") as tell:
+            channels, claim, areas = self._made.exchange(_arguments.thread_count(threads),
+                                                         "" if save is None else os.fspath(save), tell)
+        n = len(areas)
+
+        def square(k: int) -> Floats:
+            return np.array([np.reshape(np.asarray(c[k]), (n, n, 3)) for c in channels])
+
+        def rest(k: int) -> Optional[Floats]:
+            return np.array([c[k] for c in channels]) if len(channels[0][k]) else None
+
+        for c in channels:
+            if c[7]:
+                warn(f"there is no bound for exchange factors ({c[7]})")
+        factors, conductors = square(0), square(3)
+        return ExchangeFactors(self.from_names, np.array(areas, np.float64), np.array([c[6] for c in channels]),
+                               factors[..., 0], factors[..., 1], factors[..., 2], rest(1), rest(2), conductors[..., 0],
+                               conductors[..., 1], conductors[..., 2], rest(4), rest(5), claim)
+
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_made": None}
 
     _entries: tuple[tuple[ViewFactor, ...], ...] = field(repr=False)
     _made: Optional[_exactff.MadeMatrix] = field(repr=False, compare=False)
     _read: tuple[str, ...] = field(repr=False, compare=False)  # files that the scene was read from
+
+
+@dataclass(frozen=True)
+class ExchangeFactors:
+    """Exchange factors and conductors, with the first axis for channels: one if the three are alike, else red, green, blue.
+
+    ``value[c, i, j]``: of what i emits, the share that j absorbs after all bounces. Made by :meth:`ViewFactorMatrix.exchange`.
+    """
+
+    names: tuple[str, ...]
+    areas: Floats  #: (n,), without buried parts
+    emissivities: Floats  #: (c, n), 1 - Kd
+    value: Floats  #: (c, n, n)
+    lower: Floats  #: (c, n, n)
+    upper: Floats  #: (c, n, n)
+    back: Optional[Floats]  #: (c, n, 3): value, lower, upper of the share that meets backs; None if not in the matrix
+    open: Optional[Floats]  #: (c, n, 3): of the share that leaves
+    conductors: Floats  #: (c, n, n), eps_i A_i B_ij, an area; symmetric. Heat: sigma times it times (T_i^4 - T_j^4)
+    conductors_lower: Floats  #: (c, n, n)
+    conductors_upper: Floats  #: (c, n, n)
+    conductors_to_back: Optional[Floats]  #: (c, n, 3)
+    conductors_to_open: Optional[Floats]  #: (c, n, 3)
+    claim: str  #: of the bounds: "zero", "certified" or "estimated"
 
 
 class Share(NamedTuple):

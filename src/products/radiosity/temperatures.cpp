@@ -1,0 +1,325 @@
+// Temperatures and heats of gray surfaces, as radiosities. Heat that is taken away is a negative emission. The system
+// is linear, so its solution is that of all positive emissions less that of all negative ones, each with its bounds.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "exactff/radiosity.h"
+#include "kernel/float_environment.h"
+#include "matrix/columns.h"
+#include "matrix/row_facts.h"
+#include "radiosity/system.h"
+#include "text/csv_dialect.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
+#include "text/text_lines.h"
+
+namespace exactff::radiosity {
+namespace {
+
+using kernel::above;
+using kernel::below;
+
+constexpr double kRoundedPowers = 0x1p-49;  // relative, of a fourth power or root and a few products
+
+BoundedValue exact(double x) { return {x, x, x}; }
+bool is_zero(const BoundedValue& x) { return x.lower == 0.0 && x.upper == 0.0; }
+// Zeros are exact.
+BoundedValue operator+(const BoundedValue& a, const BoundedValue& b) {
+  if (is_zero(a) || is_zero(b)) return is_zero(a) ? b : a;
+  return {a.value + b.value, below(a.lower + b.lower), above(a.upper + b.upper)};
+}
+BoundedValue operator-(const BoundedValue& a, const BoundedValue& b) {
+  if (is_zero(b)) return a;
+  return {a.value - b.value, below(a.lower - b.upper), above(a.upper - b.lower)};
+}
+// With a factor that is not negative.
+BoundedValue product(const BoundedValue& a, const BoundedValue& b) {
+  if (is_zero(a) || is_zero(b)) return exact(0.0);
+  return {a.value * b.value, below(std::min(a.lower * b.lower, a.lower * b.upper)),
+          above(std::max(a.upper * b.lower, a.upper * b.upper))};
+}
+BoundedValue widened(double x, double relative) { return {x, x - relative * std::abs(x), x + relative * std::abs(x)}; }
+
+BoundedValue black_emission(double temperature) {
+  const double square = temperature * temperature;
+  return widened(kStefanBoltzmann * square * square, kRoundedPowers);
+}
+
+BoundedValue temperature_of(const BoundedValue& emission) {
+  const auto root = [](double e) { return std::sqrt(std::sqrt(std::max(0.0, e) / kStefanBoltzmann)); };
+  return {root(emission.value), root(emission.lower) * (1.0 - kRoundedPowers),
+          root(emission.upper) * (1.0 + kRoundedPowers)};
+}
+
+// What arrives if the patches emit `emission`, which is not negative. Empty: there is no bound.
+std::vector<BoundedValue> arriving(const System& all, const std::vector<BoundedValue>& emission) {
+  System system = all;
+  std::array<Numbers, 3> found;
+  constexpr std::array<double BoundedValue::*, 3> kEnds{&BoundedValue::lower, &BoundedValue::value,
+                                                        &BoundedValue::upper};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < emission.size(); ++i) system.emissions[i] = std::max(0.0, emission[i].*kEnds[k]);
+    SolutionBounds bounds = bounds_of(system);
+    found[k] = std::move(k == 0 ? bounds.lower : k == 1 ? bounds.value : bounds.upper);
+    if (found[k].empty()) return {};
+  }
+  std::vector<BoundedValue> result;
+  for (std::size_t i = 0; i < emission.size(); ++i) {
+    const auto row = system.factors.row(i);
+    double value = 0.0;
+    for (const Entry& entry : row) value += entry.value * found[1][entry.column];
+    result.push_back({value, sum_below(row, found[0]), sum_above(row, found[2])});
+  }
+  return result;
+}
+
+bool is_grey(const Rgb& kd) { return kd.r == kd.g && kd.g == kd.b; }
+
+double area_of(const Scene& scene, const Selection& patch) {
+  double area = 0.0;
+  for (const FaceId face : scene.faces_of(patch)) area += scene.face(face).area;
+  return area;
+}
+
+std::string name_of(const Scene& scene, const Selection& patch) { return text::in_quotes(scene.name_of(patch)); }
+
+void require_materials(const Scene& scene, const std::vector<Selection>& patches, const ThermalConditions& conditions) {
+  std::vector<Problem> problems;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const Rgb kd = scene.material(scene.face(scene.faces_of(patches[i]).front()).material).reflectance;
+    const auto complain = [&](const char* what, const char* why, const char* suggestion) {
+      problems.push_back({.what = name_of(scene, patches[i]) + what, .why = why, .suggestion = suggestion});
+    };
+    if (!is_grey(kd))
+      complain(" has a Kd that differs between channels", "heat has one emissivity 1 - Kd", "give it one Kd");
+    if (kd.r > 1.0) complain(" has a Kd above 1", "its emissivity 1 - Kd would be negative", "give it a Kd below 1");
+    if (kd.r == 1.0 && conditions.patches[i].heat) {
+      complain(" has the Kd 1 and a Q", "what neither absorbs nor emits has no temperature",
+               "give it a Kd below 1, or a T");
+    }
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+}  // namespace
+
+Temperatures temperatures(const Scene& scene, const matrix::Matrix& given, const ThermalConditions& conditions) {
+  const kernel::StandardArithmetic arithmetic;
+  Temperatures result;
+  result.patches = patches_of(scene);
+  const std::size_t n = result.patches.size();
+  if (given.factors.from != result.patches || given.factors.to != result.patches || given.back.empty() ||
+      given.open.empty() || conditions.patches.size() != n) {
+    text::refuse("the matrix is not of all patches, in their order, with backs and the sky",
+                 "heat is exchanged between all of them", "compute it by exactff matrix --backs --to all,sky");
+  }
+  require_materials(scene, result.patches, conditions);
+  const Exposed exposed(given);
+  const matrix::Matrix& matrix = exposed.matrix();
+  System system = system_of(scene, matrix.factors, 0);
+  for (const auto* factors : {&matrix.factors.entries, &matrix.back, &matrix.open}) {
+    for (const ViewFactor& f : *factors) result.claim = matrix::weaker(result.claim, f.claim);
+  }
+  const auto bounded = [](const ViewFactor& f) { return BoundedValue{f.value, f.lower, f.upper}; };
+  std::vector<BoundedValue> areas, eps, from_rest, black, given_flux, positive, negative;
+  bool any_negative = false;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Known& known = conditions.patches[i];
+    const double area = matrix.factors.at(i, 0).area_from, rho = system.reflectances[i];
+    areas.push_back(widened(area, matrix::kRoundedAreas));
+    eps.push_back(widened(1.0 - rho, 0x1p-52));
+    result.areas.push_back(area);
+    result.emissivities.push_back(1.0 - rho);
+    const auto arrives = [&](const ViewFactor& f, double t) {
+      return f.upper == 0.0 || t == 0.0 ? exact(0.0) : product(bounded(f), black_emission(t));
+    };
+    from_rest.push_back(arrives(matrix.back[i], conditions.back) + arrives(matrix.open[i], conditions.open));
+    black.push_back(known.temperature ? black_emission(*known.temperature) : exact(0.0));
+    given_flux.push_back(known.heat && area > 0.0 && *known.heat != 0.0
+                             ? widened(*known.heat / area, 2.0 * matrix::kRoundedAreas)
+                             : exact(0.0));
+    if (known.heat) system.reflectances[i] = 1.0;
+    const BoundedValue flux = given_flux.back(), none = exact(0.0);
+    positive.push_back(product(from_rest.back(), exact(system.reflectances[i])) +
+                       (known.temperature  ? product(black.back(), eps.back())
+                        : flux.value > 0.0 ? flux
+                                           : none));
+    negative.push_back(flux.value < 0.0 ? BoundedValue{-flux.value, -flux.upper, -flux.lower} : none);
+    any_negative = any_negative || flux.value < 0.0;
+  }
+  system.emissions.assign(n, 0.0);
+  std::vector<BoundedValue> h = arriving(system, positive);
+  if (!h.empty() && any_negative) {
+    const std::vector<BoundedValue> less = arriving(system, negative);
+    for (std::size_t i = 0; i < less.size(); ++i) h[i] = h[i] - less[i];
+    if (less.empty()) h.clear();
+  }
+  if (h.empty()) {
+    system.emissions.assign(n, 1.0);
+    Problem problem = problem_of_unbounded(scene, result.patches, system);
+    result.no_bound = std::move(problem.why);
+    result.remedy = "give some patch of a Kd below 1 a T, or compute narrower view factors by --accuracy or --certify";
+    return result;
+  }
+  result.to_back = result.to_open = exact(0.0);
+  BoundedValue sum = exact(0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Known& known = conditions.patches[i];
+    h[i] = h[i] + from_rest[i];
+    BoundedValue leaving;
+    if (known.temperature) {
+      result.temperatures.push_back(exact(*known.temperature));
+      result.heats.push_back(product(product(black[i] - h[i], eps[i]), areas[i]));
+      leaving = product(black[i], eps[i]) + product(h[i], widened(system.reflectances[i], 0.0));
+    } else {
+      const BoundedValue by_eps{
+          given_flux[i].value / eps[i].value,
+          below(std::min(given_flux[i].lower / eps[i].lower, given_flux[i].lower / eps[i].upper)),
+          above(std::max(given_flux[i].upper / eps[i].lower, given_flux[i].upper / eps[i].upper))};
+      const BoundedValue emission = h[i] + by_eps;
+      if (emission.upper < 0.0) {
+        text::refuse("more heat is taken from " + name_of(scene, result.patches[i]) + " than arrives there",
+                     "it would be colder than 0 K", "take away less heat, or give some patch a higher T");
+      }
+      result.temperatures.push_back(temperature_of(emission));
+      result.heats.push_back(exact(*known.heat));
+      leaving = h[i] + given_flux[i];
+    }
+    sum = sum + result.heats[i];
+    const auto lost = [&](const ViewFactor& f, double t) {
+      return f.upper == 0.0 ? exact(0.0) : product(product(leaving - black_emission(t), bounded(f)), areas[i]);
+    };
+    result.to_back = result.to_back + lost(matrix.back[i], conditions.back);
+    result.to_open = result.to_open + lost(matrix.open[i], conditions.open);
+  }
+  result.unbalanced = sum - result.to_back - result.to_open;
+  return result;
+}
+
+// --- Files ---
+
+ThermalConditions read_conditions(const Scene& scene, const std::filesystem::path& file) {
+  const std::vector<Selection> patches = patches_of(scene);
+  ThermalConditions conditions;
+  conditions.patches.resize(patches.size());
+  text::CsvLines lines(file, "a CSV file with the columns patch, T, Q");
+  text::CsvDialect dialect;
+  text::ProblemList problems;
+  std::vector<std::string> head, fields;
+  const auto complain = [&](std::string what, std::string why, std::string suggestion) {
+    problems.add({file.string(), lines.number(), std::move(what), std::move(why), std::move(suggestion)});
+  };
+  const auto field = [&](std::string_view name) -> std::string {
+    const auto found = std::ranges::find(head, name);
+    const auto at = static_cast<std::size_t>(found - head.begin());
+    return at < fields.size() ? fields[at] : std::string();
+  };
+  const auto take = [&](const std::string& name, std::optional<double> t, std::optional<double> q) {
+    if (name == matrix::kBack || name == matrix::kOpen) {
+      (name == matrix::kBack ? conditions.back : conditions.open) = t.value_or(0.0);
+      if (q) complain(name + " has a Q", "it is black, at a temperature", "give it a T");
+      return;
+    }
+    double area = 0.0;
+    std::vector<std::size_t> rows;
+    for (const Selection& one : scene.select_all(name)) {
+      const auto found = std::ranges::find(patches, one);
+      if (found == patches.end()) {
+        return complain(text::in_quotes(name) + " is no patch", "temperatures are of whole patches", "name a patch");
+      }
+      rows.push_back(static_cast<std::size_t>(found - patches.begin()));
+      area += area_of(scene, one);
+    }
+    for (const std::size_t row : rows) {
+      Known& known = conditions.patches[row];
+      if (known.temperature || known.heat) {
+        return complain(name_of(scene, patches[row]) + " has two rows", "one of them would be ignored", "remove one");
+      }
+      known = {t, q ? std::optional(rows.size() == 1 ? *q : *q * (area_of(scene, patches[row]) / area)) : std::nullopt};
+    }
+  };
+  const auto take_line = [&](const std::string& name, const std::string& t, const std::string& q) {
+    if (t.empty() == q.empty()) {
+      return complain(t.empty() ? "there is neither T nor Q" : "there are both T and Q", "one follows from the other",
+                      "give one of them, and leave the other field empty");
+    }
+    const text::ParsedNumber number = dialect.number(t.empty() ? q : t);
+    if (number.fault != text::NumberFault::kNone) {
+      return complain(describe(number.fault, t.empty() ? q : t), "T and Q are numbers", advice(number.fault));
+    }
+    if (!t.empty() && number.value < 0.0) {
+      return complain("T is " + text::shortest(number.value), "temperatures are in K", "add 273.15 to degrees Celsius");
+    }
+    try {
+      t.empty() ? take(name, {}, number.value) : take(name, number.value, {});
+    } catch (const InputError& error) {
+      for (const Problem& problem : error.problems()) complain(problem.what, problem.why, problem.suggestion);
+    }
+  };
+  for (std::string_view line; lines.next(line);) {
+    if (text::is_csv_comment(line)) continue;
+    const bool is_head = head.empty();
+    if (is_head) dialect = text::CsvDialect(line);
+    if (!dialect.split(line, is_head ? head : fields)) {
+      complain("a quotation mark is not closed in its line, or text follows it", "the fields cannot be separated",
+               "write a quotation mark inside quotes twice");
+    } else if (is_head) {
+      const auto has = [&](std::string_view name) { return std::ranges::find(head, name) != head.end(); };
+      if (has("patch") && (has("T") || has("Q"))) continue;
+      complain("the first line has not the columns patch, T, Q", "they say what the numbers are", "write patch,T,Q");
+      break;
+    } else {
+      take_line(field("patch"), field("T"), field("Q"));
+    }
+  }
+  problems.throw_if_any();
+  std::vector<std::string> missing;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const Known& known = conditions.patches[i];
+    if (!known.temperature && !known.heat && missing.size() < 4) missing.push_back(name_of(scene, patches[i]));
+  }
+  if (missing.size() > 3) missing.back() = "others";
+  if (missing.empty()) return conditions;
+  text::refuse(file, "has no row for " + text::enumerate(missing), "every patch has a temperature or gives off heat",
+               "write the Q 0 for a patch that only reflects and emits again");
+}
+
+table::Table table_of(const Scene& scene, const Temperatures& found, const ViewFactorOptions& options) {
+  using table::Cell;
+  using table::Strength;
+  using table::Type;
+  table::Head head;
+  head.set("scene_hash", scene.hash());
+  matrix::set_options(head, options);
+  const auto number = [](const char* name, const char* unit, Strength strength) {
+    return table::Column{name, Type::kNumber, unit, strength};
+  };
+  table::Table table("temperatures", head,
+                     {{.name = "patch", .type = Type::kText, .key = true},
+                      number("temperature", "K", Strength::kEstimated),
+                      number("temperature_lower", "K", Strength::kStated),
+                      number("temperature_upper", "K", Strength::kStated),
+                      number("heat", "W", Strength::kEstimated),
+                      number("heat_lower", "W", Strength::kStated),
+                      number("heat_upper", "W", Strength::kStated),
+                      number("emissivity", "", Strength::kGiven),
+                      number("area", "area", Strength::kEstimated),
+                      {.name = "claim", .type = Type::kText, .strength = Strength::kProved}});
+  const std::string_view claim = to_string(found.claim);
+  for (std::size_t i = 0; i < found.patches.size(); ++i) {
+    const BoundedValue &t = found.temperatures[i], &q = found.heats[i];
+    const std::string name = scene.name_of(found.patches[i]);
+    table.append(std::array<Cell, 10>{std::string_view(name), t.value, t.lower, t.upper, q.value, q.lower, q.upper,
+                                      found.emissivities[i], found.areas[i], claim});
+  }
+  for (const auto& [name, q] : {std::pair(matrix::kBack, found.to_back), std::pair(matrix::kOpen, found.to_open)}) {
+    table.append(
+        std::array<Cell, 10>{name, Cell(), Cell(), Cell(), -q.value, -q.upper, -q.lower, Cell(), Cell(), claim});
+  }
+  return table;
+}
+
+}  // namespace exactff::radiosity
