@@ -12,6 +12,7 @@
 #include "text/escape.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff::cli {
 
@@ -65,8 +66,13 @@ void warn_of_face_before(const Scene& scene, const Receiver& receiver, const std
 
 void OneReceiver::add_to(CLI::App& app) {
   flags::add_vector_option(app, "--at", at, "The receiver's point")->required();
-  flags::add_vector_option(app, "--normal", normal, "The receiver's normal, of any length except zero", "NX NY NZ")
-      ->required();
+  CLI::Option* direction =
+      flags::add_vector_option(app, "--normal", normal, "The receiver's normal, of any length except zero", "NX NY NZ");
+  app.add_flag(
+         "--sphere", sphere,
+         "Instead of --normal: the receiver is a small sphere, which sees all directions. The form factor is then "
+         "the solid angle over 4 pi")
+      ->excludes(direction);
   app.add_option("--on", on,
                  "The receiver lies on this face, or on several (floor:1+2); faces exactly in their planes then "
                  "neither occlude nor illuminate it; auto or auto:DISTANCE finds them")
@@ -74,7 +80,15 @@ void OneReceiver::add_to(CLI::App& app) {
 }
 
 Receiver OneReceiver::make(const Scene& scene) const {
-  Receiver receiver{flags::vector_of(at, "--at"), flags::vector_of(normal, "--normal"), {}, ""};
+  if (!sphere && !flags::is_given(normal)) {
+    text::refuse("--normal is required", "only what lies above the receiver's horizon counts",
+                 "add --normal NX NY NZ, or --sphere for a receiver that sees all directions");
+  }
+  Receiver receiver{flags::vector_of(at, "--at"), sphere ? Vec3{} : flags::vector_of(normal, "--normal"), {}, ""};
+  if (sphere && flags::auto_face(on, scene)) {
+    text::refuse("--on " + on + " is given with --sphere", "it finds a face whose normal is the receiver's",
+                 "name the face");
+  }
   if (!on.empty()) receiver.on = own_faces(on, scene, receiver);
   return receiver;
 }
@@ -102,6 +116,7 @@ void warn_if_off_its_face(const Scene& scene, const Receiver& receiver) {
 
 void warn_of_near_face(const Scene& scene, const Receiver& receiver, const std::function<bool()>& sees_no_front,
                        const std::function<std::string(const Receiver&)>& effect) {
+  if (receiver.normal == Vec3{}) return;  // a sphere, which sees both sides of everything
   if (!receiver.on.empty()) return warn_of_own_face(scene, receiver);
   const NearFaces near = find_faces(scene, receiver, face_tolerance(scene, receiver.point));
   if (near.faces.empty()) return warn_of_face_before(scene, receiver, sees_no_front, effect);

@@ -14,9 +14,11 @@ namespace exactff::cli {
 
 struct OneReceiver {
   flags::ThreeNumbers at, normal;
+  bool sphere = false;  // without a normal
   std::string on;
 
   void add_to(CLI::App& app);
+  // The normal of a sphere is (0, 0, 0).
   [[nodiscard]] Receiver make(const Scene& scene) const;
 };
 

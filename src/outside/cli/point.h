@@ -27,6 +27,8 @@ struct PointArguments {
   int digits = 0;
   int precision_cap = ExactOptions{}.precision_cap;
   flags::EngineArgument engine;
+  flags::MeasureArgument measure;
+  flags::ThreeNumbers up;
   bool fraction = false;
   bool exact_fraction = false;
   bool gradient = false;
@@ -61,6 +63,7 @@ struct PointTerm {
 
 struct PointResult {
   Receiver receiver = {};
+  Measure measure = {};
   Rgb reflectance = {};
   std::vector<PointTerm> sources = {};
   bool every_patch = false;            // --source all

@@ -6,6 +6,7 @@
 #include "exactff/version.h"
 #include "jobs/kept_work.h"
 #include "kernel/float_environment.h"
+#include "render/identity.h"
 #include "scene/scene.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -91,6 +92,12 @@ void Job::require_possible() const {
                         : "sky is a source, and layers are requested",
         request_.method ? "such methods know patches only" : "the sky has no area of which a fraction is visible",
         request_.method ? "leave out sky or --method" : "leave out sky or --layers");
+  }
+  if (!request_.measure.is_form_factor() && (request_.quantity != Quantity::kFormFactor || request_.method ||
+                                             request_.radiosities || request_.shown == Shown::kSlope)) {
+    text::refuse("another measure than the form factor is requested together with light, a method or the gradient",
+                 "it is a sum over the sources, whatever they emit, and only its exact value is known",
+                 "ask for the quantity form-factor, and leave out --method, --against METHOD and --radiosity");
   }
   if (request_.bounds == Bounds::kAll && request_.method) {
     text::refuse("bounds are requested of a picture by an approximate method", "such a method proves nothing",
@@ -184,8 +191,9 @@ Metadata Job::metadata() const {
       {"scene", text::printable(request_.scene_name)},
       {"scene hash", scene.hash()},
       {"camera", flags_of(request_.view)},
-      {"quantity", slope
-                       ? "slope of the form factors along the surface, per unit of length"
+      {"quantity", slope ? "slope of the form factors along the surface, per unit of length"
+                   : !request_.measure.is_form_factor()
+                       ? words_of_measure(request_.measure)
                        : std::string(to_string(request_.quantity)) + ", in " + unit_of(request_.quantity, request_.ke)},
       {"Ke", request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity"},
       {"sides", request_.sides == Sides::kBoth ? "both" : "front"},

@@ -10,6 +10,7 @@
 #include <boost/container/static_vector.hpp>
 #include <cmath>
 #include <compare>
+#include <optional>
 
 #include "contour/contour.h"
 #include "contour/measures.h"
@@ -50,6 +51,13 @@ struct ViewMemory : WorkspaceInside::Memory::Guest {
     friend auto operator<=>(const Reference&, const Reference&) = default;
   };
   std::vector<Reference> references;
+  // What all directions are together to QuickTier::kBits: receivers of one normal share it.
+  struct Whole {
+    Measure measure;
+    Vec3 n;
+    Ball ball;
+  };
+  std::optional<Whole> whole;
   std::vector<SeenPatch> spare;  // views differ in their number of patches
   FormFactor form_factor;
 };
@@ -205,7 +213,11 @@ class ViewSolver {
   [[nodiscard]] Ball whole(bool buried, long bits) const {
     const auto count = std::ranges::count(views_, buried, &visibility::View::is_buried);
     if (count == 0) return Ball(bits);
-    const Ball all = contour::whole_measure(measure_, views_.front().n, bits);
+    const Vec3& n = views_.front().n;
+    if (bits == QuickTier::kBits && (!memory_.whole || memory_.whole->measure != measure_ || memory_.whole->n != n)) {
+      memory_.whole = {measure_, n, contour::whole_measure(measure_, n, bits)};
+    }
+    const Ball all = bits == QuickTier::kBits ? memory_.whole->ball : contour::whole_measure(measure_, n, bits);
     return static_cast<std::size_t>(count) == views_.size() ? all : all / kernel::to_ball(2.0, bits);
   }
 
