@@ -299,6 +299,7 @@ class Solver {
         receiver_(receiver),
         planes_(ExactSourceInside::planes(source).planes),
         options_(options),
+        is_form_factor_(options.measure.is_form_factor()),
         wants_fraction_(options.visible_fraction || options.exact_fraction),
         wants_gradient_(options.gradient || options.vertices || options.list_arcs || options.along.has_value()),
         view_(scene, receiver),
@@ -316,21 +317,17 @@ class Solver {
     memory_.quick.start(view_.n);
     if (wants_gradient_) start_gradient();
     for (std::size_t p = 0; p < planes_.size(); ++p) {
-      if (!options_.measure.is_form_factor()) {
-        note(planes_[p], measured(planes_[p]), result_.planes[p]);
-        continue;
-      }
-      PlaneVisibility seen = find(planes_[p]);
+      PlaneVisibility seen = is_form_factor_ ? find(planes_[p]) : measured(planes_[p]);
       if (wants_gradient_ && !view_.is_buried) {
         memory_.gradient->add({view_, planes_[p], request_}, seen.boundary);
-      } else {
+      } else if (is_form_factor_) {
         memory_.quick.add(seen.boundary);
       }
       note(planes_[p], std::move(seen), result_.planes[p]);
     }
     sort_unique(result_.cutters);
     if (something_visible_ && !sum_is_certain()) integrate_in_balls();
-    exact::set_bounds(result_, contour::most_of(options_.measure));
+    exact::set_bounds(result_, is_form_factor_ ? 1.0 : contour::most_of(options_.measure));
     if (wants_gradient_) find_gradient();
     if (options_.vertices && !view_.is_buried) find_vertices();
     if (wants_fraction_) set_fraction(shares_, result_);
@@ -343,7 +340,7 @@ class Solver {
   }
 
   // The same for another measure, whose terms are added. Those of a sphere are found in two halves of its view.
-  [[nodiscard]] PlaneVisibility measured(const SourcePlane& plane) {
+  [[nodiscard, gnu::noinline]] PlaneVisibility measured(const SourcePlane& plane) {
     PlaneVisibility seen = measured(plane, half_view(plane, 0));
     if (options_.measure.sphere) join(seen, measured(plane, half_view(plane, 1)));
     return seen;
@@ -444,7 +441,7 @@ class Solver {
   [[nodiscard]] bool sum_is_certain() {
     constexpr int kBits = exact::QuickTier::kBits;
     if (options_.precision_cap < kBits) return false;
-    if (!options_.measure.is_form_factor()) {
+    if (!is_form_factor_) {
       const std::optional<bool> counts = memory_.quick.something_counts();
       if (counts != true) return counts.has_value();
     }
@@ -454,7 +451,7 @@ class Solver {
 
   // Step 7 in balls of rising precision.
   void integrate_in_balls() {
-    if (!options_.measure.is_form_factor()) return measure_in_balls();
+    if (!is_form_factor_) return measure_in_balls();
     const contour::ContourIntegral contour = exact_contour();
     exact::certify([&](long bits) { return contour.evaluate(bits); }, options_.digits, options_.precision_cap, result_);
   }
@@ -472,7 +469,7 @@ class Solver {
     return contour;
   }
 
-  void measure_in_balls() {
+  [[gnu::noinline]] void measure_in_balls() {
     contour::MeasureIntegral integral(options_.measure);
     for (const SourcePlane& plane : planes_) {
       for (int half = 0; half < (options_.measure.sphere ? 2 : 1); ++half) {
@@ -491,7 +488,7 @@ class Solver {
   const Receiver& receiver_;
   const std::vector<SourcePlane>& planes_;
   const ExactOptions& options_;
-  const bool wants_fraction_, wants_gradient_;
+  const bool is_form_factor_, wants_fraction_, wants_gradient_;
   const visibility::View view_;
   const visibility::BoundaryRequest request_;
   FormFactor& result_;
