@@ -148,6 +148,9 @@ def test_other_measures_are_those_of_a_truth_file(tmp_path):
                          ("overcast", found(receivers.normals, measure="overcast", up=(1, 2, 3))),
                          ("sphere", found(None))]:
         assert values.any() and same_bits(values, column(rows, name, 2)), name
+    again = tmp_path / "again.csv"
+    exactff.truth(scene, receivers, again, sources, measures=["solid-angle", "overcast", "sphere"], up=(1, 2, 3))
+    assert [row["overcast"] for row in truth_rows(again)] == [row["overcast"] for row in rows]
     point, normal = receivers.points[0], receivers.normals[0]
     pair = scene.form_factor(point, normal, "window", int(receivers.on[0, 0]), measure="solid-angle")
     assert pair.value == float(rows[0]["solid_angle"])

@@ -175,7 +175,8 @@ def method_text(text: str) -> str: ...
 def estimates(method: str, scene: Scene, points: _Floats, normals: _Floats, on: _Ints, sources: Sequence[str],
               threads: int, progress: _Tell) -> _Floats: ...
 def write_truth(scene: Scene, scene_name: str, receivers: ReceiverList, receivers_name: str, sources: Sequence[str],
-                file: _Path, existing: str, columns: Sequence[str], threads: int,
+                file: _Path, existing: str, columns: Sequence[str],
+                measures: Sequence[_Measure], threads: int,
                 progress: _Tell) -> tuple[int, list[int], int, float]: ...
 class Matching:
     truth_column: str
