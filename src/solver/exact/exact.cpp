@@ -145,14 +145,15 @@ Workspace::Memory& Workspace::memory() { return owned_by(memory_, "Workspace"); 
 
 namespace {
 
-void check_receiver(const Receiver& receiver) {
-  for (const Vec3& v : {receiver.point, receiver.normal}) {
+void check_receiver(const Receiver& receiver, const Measure& measure) {
+  const Vec3 normal = measure.sphere ? Vec3{0.0, 0.0, 1.0} : receiver.normal;  // a sphere's does not matter
+  for (const Vec3& v : {receiver.point, normal}) {
     if (kernel::is_finite(v)) continue;
     throw InputError({.what = "the receiver's point or normal is not finite",
                       .why = "a form factor needs a point and a direction",
                       .suggestion = "give three finite numbers for each"});
   }
-  if (receiver.normal == Vec3{}) {
+  if (normal == Vec3{}) {
     throw InputError({.what = "the receiver's normal is (0, 0, 0)",
                       .why = "it has no direction, so the horizon is not defined",
                       .suggestion = "give a normal of any length other than zero"});
@@ -203,14 +204,14 @@ Receiver looking_along(const Receiver& receiver, const Vec3& n) {
 
 void check_arguments(const Scene& scene, const Receiver& receiver, const ExactSource& source, const Measure& measure) {
   require_of_scene(scene, ExactSourceInside::planes(source).scene, "source");
-  check_receiver(measure.sphere ? looking_along(receiver, {0.0, 0.0, 1.0}) : receiver);
+  check_receiver(receiver, measure);
   for (const FaceId face : receiver.on) require_face(scene, face);
 }
 
 void check_view_arguments(const Scene& scene, const Receiver& receiver, const Measure& measure, int precision_cap) {
   check_precision_cap(precision_cap);
   check_measure(measure);
-  check_receiver(measure.sphere ? looking_along(receiver, {0.0, 0.0, 1.0}) : receiver);
+  check_receiver(receiver, measure);
   for (const FaceId face : receiver.on) require_face(scene, face);
 }
 
