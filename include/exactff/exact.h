@@ -92,10 +92,35 @@ struct PlaneRecord {
 // that no single side of the shaft rules out, so a candidate may hide nothing.
 [[nodiscard]] Outcome decided_outcome(const PlaneRecord& plane);
 
+// ----------------------------------------------------------------------------------------------------------- measure
+
+// What is integrated over the directions w, unit vectors, in which the source is visible. n is the receiver's unit
+// normal; only directions above its horizon count.
+enum class MeasureKind {
+  kFormFactor,  // (w . n) / pi: F, in [0, 1]
+  kSolidAngle,  // 1: the solid angle, in sr, at most 2 pi
+  kOvercast,    // (w . n) (1 + 2 w . up) 3 / (7 pi) where w . up > 0: what x receives of a sky behind the source, over
+              // what open ground receives of the whole sky. In [0, 1]. The sky is the overcast one of the CIE (standard
+              // sky 16; P. Moon and D. E. Spencer, 1942), whose zenith is `up`: the sky component of a daylight factor
+};
+[[nodiscard]] std::string_view to_string(MeasureKind kind);  // "form-factor", "solid-angle", "overcast"
+[[nodiscard]] std::optional<MeasureKind> measure_named(std::string_view name);
+
+struct Measure {
+  MeasureKind kind = MeasureKind::kFormFactor;
+  Vec3 up{0.0, 0.0, 1.0};  // of kOvercast: of any length other than zero (else InputError)
+  // The receiver is a small sphere, without a normal: directions on both sides of it count. The form factor from the
+  // sphere is the solid angle over 4 pi. Not with kOvercast (else InputError).
+  bool sphere = false;
+
+  [[nodiscard]] bool is_form_factor() const { return kind == MeasureKind::kFormFactor && !sphere; }
+  friend bool operator==(const Measure&, const Measure&) = default;
+};
+
 // ------------------------------------------------------------------------------------------------------- form factor
 
 enum class Status {
-  kCertified,     // value is the correctly rounded F > 0
+  kCertified,     // value is the correctly rounded F > 0; as the other three, also of another measure in place of F
   kZero,          // F is proved to be exactly 0
   kUnderflow,     // F is positive and rounds to 0
   kNotCertified,  // the precision cap was reached; the enclosure is valid, value is its rounded midpoint
@@ -180,8 +205,8 @@ struct Gradient {
 };
 
 struct FormFactor {
-  double value = 0.0;
-  double lower = 0.0;  // if certified: the neighbouring doubles of value, clamped to [0, 1]
+  double value = 0.0;  // of ExactOptions::measure, as the bounds and the enclosure
+  double lower = 0.0;  // if certified: the neighbouring doubles of value, clamped to the range of the measure
   double upper = 0.0;
   Status status = Status::kZero;
   Enclosure enclosure;                      // contains F
@@ -197,6 +222,7 @@ struct FormFactor {
 
 struct ExactOptions {
   Engine engine = Engine::kEdges;
+  Measure measure = {};  // with a gradient, only the form factor (else InputError)
   bool visible_fraction = false;
   bool exact_fraction = false;  // implies visible_fraction
   bool list_cutters = false;

@@ -164,6 +164,9 @@ struct Request {
   std::optional<radiosity::Radiosities> radiosities = {};
   std::optional<methods::Choice> method = {};  // empty: the exact values
   Quantity quantity = Quantity::kRadiance;
+  // Another one than the form factor requires that quantity, which then is the sum of this measure over the sources (a
+  // sphere at the point, on both sides of the face, if it is one); not with a method, radiosities, the slope.
+  Measure measure = {};
   KeMeans ke = KeMeans::kRadiosity;
   Sides sides = Sides::kFront;
   int spp = 1;  // a pixel is the mean of the values at the centres of spp x spp parts of it

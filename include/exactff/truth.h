@@ -44,6 +44,9 @@ struct Request {
   bool unoccluded = false;
   // Adds a column: visible area over whole unclipped area, correctly rounded.
   bool visible_fraction = false;
+  // Adds a column for each of these measures (exact.h) other than the form factor: solid_angle, overcast, or sphere,
+  // the form factor from a small sphere. Each kind at most once (else InputError).
+  std::vector<Measure> measures = {};
   // Adds columns ux,uy,uz: the normal scaled to length 1, each component correctly rounded. The values belong to the
   // exact normal in nx,ny,nz.
   bool unit_normals = false;
@@ -102,9 +105,9 @@ void write_npy(const std::filesystem::path& truth_file, const std::filesystem::p
 //   points (n, 3)     normals (n, 3): unit vectors, correctly rounded     on (n): index into faces, -1 for none
 //   F (n, sources): NaN where a value is not certified                    sources, faces: names; about: the comments
 //
-// and visible_fraction and unoccluded (n, sources), gradient (n, sources, 3): NaN at kinks, total (n, 3), if the file
-// has them. numpy.load(file) reads it. The
-// file appears complete or not at all, and replaces another one. Throws as write_npy, and if it were larger than 4 GiB.
+// and visible_fraction, unoccluded, solid_angle, overcast and sphere (n, sources), gradient (n, sources, 3): NaN at
+// kinks, total (n, 3), if the file has them. numpy.load(file) reads it. The file appears complete or not at all, and
+// replaces another one. Throws as write_npy, and if it were larger than 4 GiB.
 void write_npz(const std::filesystem::path& truth_file, const std::filesystem::path& file,
                const jobs::RowHooks& hooks = {});
 

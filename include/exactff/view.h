@@ -8,6 +8,10 @@
 // among several fronts, nothing depends on the order of the faces. The part of a front that is buried (scene.h) is not
 // seen: there, the back that buries it is.
 //
+// Of another measure (exact.h) than the form factor, the shares are solid angles, which add up to 2 pi, or 4 pi around
+// a sphere; or parts of what open ground receives of an overcast sky, which add up to what x receives of an open sky: 1
+// if x looks straight up.
+//
 // The form factor of a patch (exact.h) is its share, except where a front of another patch with a lower index lies in
 // one plane with it and overlaps it: such a patch is stacked, and keeps its full form factor.
 //
@@ -77,7 +81,7 @@ struct WholeView {
   std::vector<SeenPatch> patches;      // every patch, or face, with a share or a form factor above 0, by index
   ViewShare back;                      // backs of faces
   ViewShare open;                      // nothing
-  ViewShare buried;                    // 1 if the receiver is buried (scene.h), so that it sees nothing; else 0
+  ViewShare buried;                    // all, 1 of F, if the receiver is buried (scene.h) and sees nothing; else 0
   std::optional<FaceId> buried_under;  // the face that lies on it
   std::vector<ViewArc> arcs;           // on request
   ViewRecord record;
@@ -86,6 +90,7 @@ struct WholeView {
 struct ViewOptions {
   bool faces = false;         // one value for each face instead of each patch
   bool arcs = false;          // also list the arcs, between any two faces
+  Measure measure = {};       // as in ExactOptions, of shares and form factors
   int digits = 0;             // as in ExactOptions
   int precision_cap = 65536;  // the same
 };

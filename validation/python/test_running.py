@@ -16,6 +16,7 @@ import exactff
 from support import CORNELL, POINT, UP, lamp_above, same_bits
 
 ROOM = exactff.Scene.read(CORNELL)
+FORM_FACTOR = ("form-factor", (0.0, 0.0, 1.0), False)
 GRID = ROOM.receivers("floor", grid=(60, 60))
 
 
@@ -127,13 +128,13 @@ def test_no_leak_in_100000_calls():
 
     def some(calls):
         for _ in range(calls):
-            compiled.form_factor(ROOM._scene, POINT, UP, floor, "light", False, False, False, False, 0, 65536, None).enclosure
+            compiled.form_factor(ROOM._scene, POINT, UP, floor, "light", False, False, False, False, 0, 65536, None, FORM_FACTOR).enclosure
         for _ in range(calls // 20):
             ROOM.form_factors(point, up, "light", 0, full=True)
             ROOM.form_factor(POINT, UP, "light", 0, gradient=True)
         for _ in range(calls // 200):
             with pytest.raises(exactff.InputError):
-                compiled.form_factor(ROOM._scene, POINT, UP, floor, "lamp", False, False, False, False, 0, 65536, None)
+                compiled.form_factor(ROOM._scene, POINT, UP, floor, "lamp", False, False, False, False, 0, 65536, None, FORM_FACTOR)
             lamp_above((0.5, 0.2)).form_factors(np.zeros((40, 3)), [0, 0, 1], threads=2)
         gc.collect()
 

@@ -130,3 +130,60 @@ def test_values_that_are_not_certified_warn_and_keep_valid_bounds():
     assert capped.status.tolist() == [exactff.Status.NOT_CERTIFIED] and capped.precision_bits.tolist() == [40]
     assert capped.lower[0] <= true[0] <= capped.upper[0]
     assert str(exactff.Status(3)) == "not certified"
+
+
+def test_other_measures_are_those_of_a_truth_file(tmp_path):
+    file = tmp_path / "truth.csv"
+    program("truth", BLINDS, "--on", "floor", "--grid", "3x3", "--source", "window", "--source", "sky", "--measure",
+            "solid-angle,overcast,sphere", "--up", 1, 2, 3, "-o", file)
+    rows = truth_rows(file)
+    scene = open_scene(BLINDS)
+    receivers = scene.receivers("floor", grid=(3, 3))
+    sources = ["window", "sky"]
+
+    def found(normals, **measure):
+        return scene.form_factors(receivers.points, normals, sources, receivers.on, **measure)
+
+    for name, values in [("solid_angle", found(receivers.normals, measure="solid-angle")),
+                         ("overcast", found(receivers.normals, measure="overcast", up=(1, 2, 3))),
+                         ("sphere", found(None))]:
+        assert values.any() and same_bits(values, column(rows, name, 2)), name
+    again = tmp_path / "again.csv"
+    exactff.truth(scene, receivers, again, sources, measures=["solid-angle", "overcast", "sphere"], up=(1, 2, 3))
+    assert [row["overcast"] for row in truth_rows(again)] == [row["overcast"] for row in rows]
+    point, normal = receivers.points[0], receivers.normals[0]
+    pair = scene.form_factor(point, normal, "window", int(receivers.on[0, 0]), measure="solid-angle")
+    assert pair.value == float(rows[0]["solid_angle"])
+    seen = exactff.view(scene, point, None, measure="solid-angle")
+    total = sum(patch.share.value for patch in seen.values()) + seen.back.value + seen.open.value
+    assert total == pytest.approx(4.0 * np.pi, abs=1e-13)
+    with pytest.raises(exactff.InputError, match="needs a surface with a normal"):
+        scene.form_factor(point, None, "window", measure="overcast")
+
+
+def test_other_measures_are_what_quadrature_finds():
+    rng = np.random.default_rng(7)
+    nodes, weights = np.polynomial.legendre.leggauss(48)
+    nodes, weights = 0.5 * (nodes + 1.0), 0.5 * weights
+    s, t = np.meshgrid(nodes, nodes)
+    area = np.outer(weights, weights) * s  # of the map (s, t) -> a + s ((1 - t) (b - a) + t (c - a))
+    for _ in range(20):
+        corners = rng.uniform([-2.0, -2.0, 1.5], [2.0, 2.0, 3.0], (3, 3))
+        normal, up = rng.uniform(-0.3, 0.3, (2, 3)) + [0.0, 0.0, 1.0]
+        a, b, c = corners
+        across = np.cross(b - a, c - a)
+        if across @ a > 0.0:  # its front looks at the receiver
+            b, c, across = c, b, -across
+        y = a + s[..., None] * ((1.0 - t)[..., None] * (b - a) + t[..., None] * (c - a))
+        r = np.linalg.norm(y, axis=-1)
+        solid_angle = area * -(y @ across) / r**3
+        n, z = y @ normal / np.linalg.norm(normal) / r, y @ up / np.linalg.norm(up) / r
+        assert n.min() > 0.0 and z.min() > 0.0
+        scene = exactff.Scene([a, b, c], [[0, 1, 2]])
+
+        def found(**measure):
+            return float(scene.form_factor([0.0, 0.0, 0.0], normal, "default", **measure).value)
+
+        assert found(measure="solid-angle") == pytest.approx(solid_angle.sum(), abs=1e-13)
+        assert found(measure="overcast", up=up) == pytest.approx(
+            3.0 / (7.0 * np.pi) * (n * (1.0 + 2.0 * z) * solid_angle).sum(), abs=1e-13)

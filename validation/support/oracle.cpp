@@ -201,14 +201,20 @@ Rational whole_area(std::vector<Polygon> faces, int axis) {
 }
 
 // Faces seen from behind or edge-on contribute nothing.
-Fragments visible_part(const Setting& setting, std::vector<Polygon> faces) {
+Fragments visible_part(const Setting& setting, std::vector<Polygon> faces, const std::vector<HalfSpace>& above) {
   std::erase_if(faces, [](const Polygon& face) { return face.own; });
   if (faces.empty() || sgn(faces.front().offset) >= 0) return {};
   Fragments visible = union_of(faces);
-  toggle(visible, {{setting.normal, 0}});
-  keep(visible, true);
+  for (const HalfSpace& half : above) {
+    toggle(visible, {half});
+    keep(visible, true);
+  }
   for (const Polygon& polygon : setting.occluders) hide(visible, polygon);
   return visible;
+}
+
+Fragments visible_part(const Setting& setting, std::vector<Polygon> faces) {
+  return visible_part(setting, std::move(faces), {{setting.normal, 0}});
 }
 
 // --- The receiver's own plane ---
@@ -318,14 +324,22 @@ std::vector<bool> own_pieces(const Scene& scene, const Receiver& receiver) {
 }
 
 OracleResult oracle(const Scene& scene, const Receiver& receiver, const Selection& source) {
+  return oracle(scene, receiver, source, Measure{});
+}
+
+OracleResult oracle(const Scene& scene, const Receiver& receiver, const Selection& source, const Measure& measure) {
   const Setting setting = make_setting(scene, receiver, source, {}, 0);
+  const Vector up = exact(measure.up);
+  std::vector<HalfSpace> above;
+  if (!measure.sphere) above.push_back({setting.normal, 0});
+  if (measure.kind == MeasureKind::kOvercast) above.push_back({up, 0});
   OracleResult result;
   std::vector<Share> shares;
   std::vector<Corners> polygons;
   for (const std::vector<Polygon>& faces : setting.planes) {
     const Vector& normal = faces.front().normal;
     const int axis = steep_axis(normal);
-    Fragments visible = visible_part(setting, faces);
+    Fragments visible = visible_part(setting, faces, above);
     const Share& share = shares.emplace_back(
         Share{area_along(visible, axis), whole_area(faces, axis), dot(normal, normal) / (normal[axis] * normal[axis])});
     result.planes.push_back({ids(faces), share.visible / share.whole});
@@ -334,7 +348,12 @@ OracleResult oracle(const Scene& scene, const Receiver& receiver, const Selectio
   result.visible_fraction = rounded_share(shares);
   result.zero = polygons.empty();
   if (result.zero) return result;
-  const RoundedSum sum = lambert_sum(polygons, setting.normal);
+  using Kind = SumMeasure::Kind;
+  const Kind kind = measure.kind == MeasureKind::kOvercast     ? Kind::kOvercast
+                    : measure.kind == MeasureKind::kSolidAngle ? Kind::kSolidAngle
+                                                               : Kind::kSphere;
+  const RoundedSum sum = measure.is_form_factor() ? lambert_sum(polygons, setting.normal)
+                                                  : measure_sum(polygons, setting.normal, {kind, up});
   result.value = sum.value;
   result.decimals = sum.decimals;
   result.low = sum.low;

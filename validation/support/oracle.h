@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "exactff/exact.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
 
@@ -35,6 +36,11 @@ struct OracleResult {
 
 // Exact. The time grows with the number of fragments: intended for up to some dozens of occluders.
 [[nodiscard]] OracleResult oracle(const Scene& scene, const Receiver& receiver, const Selection& source);
+
+// The same for another measure than the form factor, except that fractions are of what counts: what lies above z's
+// horizon, too, if the sky is overcast, and on both sides of a sphere.
+[[nodiscard]] OracleResult oracle(const Scene& scene, const Receiver& receiver, const Selection& source,
+                                  const Measure& measure);
 
 // What moves: the receiver, or the vertices at one place.
 struct OracleMovement {

@@ -1,6 +1,10 @@
 // Method: over the corners a, b of each polygon
 //   |sum n.(a x b) / |a x b| * 2 atan(|a x b| / (|a||b| + a.b))| / (2 pi |n|),
 // in ball arithmetic from exact rational products, the precision doubled until one double and 30 digits are left.
+//
+// Other measures: the solid angle is that of the triangles from one corner of each polygon (van Oosterom and Strackee,
+// 1983), and the second moment is Arvo's (SIGGRAPH '95) with normal and `up` exchanged, which changes its terms, but
+// not their sum.
 #include "support/oracle_sum.h"
 
 #include <arb.h>
@@ -93,7 +97,7 @@ bool rounds_to(arb_ptr ball, double value) {
   arf_init(end);
   set_halfway(end, value, -1.0);
   arb_set_arf(low, end);
-  set_halfway(end, value, 2.0);
+  set_halfway(end, value, 20.0);
   arb_set_arf(high, end);
   arf_clear(end);
   return arb_gt(ball, low) && arb_lt(ball, high);
@@ -159,6 +163,102 @@ RoundedSum lambert_sum(const std::vector<Corners>& polygons, const Vector& n) {
     if (settle(result, ball)) return result;
   }
   throw std::runtime_error("the oracle found no end of precision");
+}
+
+namespace {
+
+// tan(half the solid angle) = a . (b x c) / (|a||b||c| + (a . b) |c| + (b . c) |a| + (c . a) |b|).
+void add_triangle(arb_ptr sum, const Vector& a, const Vector& b, const Vector& c, slong bits) {
+  Real la(dot(a, a), bits), lb(dot(b, b), bits), lc(dot(c, c), bits);
+  for (Real* const length : {&la, &lb, &lc}) arb_sqrt(*length, *length, bits);
+  Real top(dot(a, cross(b, c)), bits), bottom, part;
+  arb_mul(bottom, la, lb, bits);
+  arb_mul(bottom, bottom, lc, bits);
+  const auto add = [&](const Rational& product, Real& length) {
+    Real term(product, bits);
+    arb_addmul(bottom, term, length, bits);
+  };
+  add(dot(a, b), lc);
+  add(dot(b, c), la);
+  add(dot(c, a), lb);
+  arb_atan2(part, top, bottom, bits);
+  arb_mul_2exp_si(part, part, 1);
+  arb_add(sum, sum, part, bits);
+}
+
+// Adds tan(theta / 2) (m . (a^ + b^)) (n . k), k the unit vector of a x b.
+void add_moment(arb_ptr sum, const Vector& a, const Vector& b, const Vector& n, const Vector& m, slong bits) {
+  const Vector c = cross(a, b);
+  if (is_zero(c)) return;
+  Real la(dot(a, a), bits), lb(dot(b, b), bits), sine(dot(c, c), bits), cosine(dot(a, b), bits), ma(dot(m, a), bits),
+      mb(dot(m, b), bits), weight(dot(n, c), bits), lengths;
+  for (Real* const length : {&la, &lb, &sine}) arb_sqrt(*length, *length, bits);
+  arb_mul(lengths, la, lb, bits);
+  arb_add(cosine, cosine, lengths, bits);
+  arb_div(ma, ma, la, bits);
+  arb_div(mb, mb, lb, bits);
+  arb_add(ma, ma, mb, bits);
+  arb_div(cosine, sine, cosine, bits);  // tan(theta / 2)
+  arb_div(weight, weight, sine, bits);
+  arb_mul(ma, ma, weight, bits);
+  arb_addmul(sum, ma, cosine, bits);
+}
+
+// Clockwise as seen from the origin.
+Corners clockwise(Corners corners) {
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    const int sense = sgn(dot(corners[0], cross(corners[i - 1], corners[i])));
+    if (sense == 0) continue;
+    if (sense < 0) std::ranges::reverse(corners);
+    break;
+  }
+  return corners;
+}
+
+void evaluate_measure(arb_ptr result, const std::vector<Corners>& polygons, const Vector& n, const SumMeasure& measure,
+                      slong bits) {
+  const bool overcast = measure.kind == SumMeasure::Kind::kOvercast;
+  Real angle, moment, pi;
+  for (const Corners& any : polygons) {
+    const Corners corners = clockwise(any);
+    for (std::size_t i = 2; i < corners.size(); ++i) add_triangle(angle, corners[0], corners[i - 1], corners[i], bits);
+    for (std::size_t i = 0; overcast && i < corners.size(); ++i) {
+      add_moment(moment, corners[i], corners[(i + 1) % corners.size()], n, measure.up, bits);
+    }
+  }
+  arb_const_pi(pi, bits);
+  if (!overcast) {
+    arb_set(result, angle);
+    if (measure.kind == SumMeasure::Kind::kSolidAngle) return;
+    arb_div(result, result, pi, bits);
+    arb_mul_2exp_si(result, result, -2);
+    return;
+  }
+  // 3 / (7 pi) (pi F + 2/3 ((n . up) sigma + moment) / (|n||up|))
+  Real lambert, normal_up(dot(n, measure.up), bits), lengths(dot(n, n) * dot(measure.up, measure.up), bits);
+  evaluate(lambert, polygons, n, bits);
+  arb_mul(lambert, lambert, pi, bits);
+  arb_addmul(moment, normal_up, angle, bits);
+  arb_sqrt(lengths, lengths, bits);
+  arb_div(moment, moment, lengths, bits);
+  arb_mul_2exp_si(moment, moment, 1);
+  arb_div_ui(moment, moment, 3, bits);
+  arb_add(lambert, lambert, moment, bits);
+  arb_mul_ui(lambert, lambert, 3, bits);
+  arb_div_ui(lambert, lambert, 7, bits);
+  arb_div(result, lambert, pi, bits);
+}
+
+}  // namespace
+
+RoundedSum measure_sum(const std::vector<Corners>& polygons, const Vector& n, const SumMeasure& measure) {
+  RoundedSum result;
+  Real ball;
+  for (slong bits = 192; bits <= 65536; bits *= 2) {
+    evaluate_measure(ball, polygons, n, measure, bits);
+    if (settle(result, ball)) return result;
+  }
+  throw std::runtime_error("the oracle found no end of precision for a measure");
 }
 
 namespace {

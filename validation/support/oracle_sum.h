@@ -32,6 +32,15 @@ struct RoundedSum {
 // above the horizon of n and in a plane that does not contain the origin. Its orientation does not matter.
 [[nodiscard]] RoundedSum lambert_sum(const std::vector<Corners>& polygons, const Vector& n);
 
+// What measure_sum integrates over the polygons.
+struct SumMeasure {
+  enum class Kind { kSolidAngle, kSphere, kOvercast } kind = Kind::kSolidAngle;  // as exactff/exact.h
+  Vector up{};
+};
+// The sum of another measure. The same requirements, for the overcast sky above both horizons; for a solid angle, there
+// need be no normal.
+[[nodiscard]] RoundedSum measure_sum(const std::vector<Corners>& polygons, const Vector& n, const SumMeasure& measure);
+
 // low <= that sum <= high, computed with so many bits.
 struct SumBounds {
   Rational low, high;

@@ -32,7 +32,8 @@ std::string place_text(const Vec3& place) {
 
 std::string receiver_text(const Scene& scene, const Receiver& receiver) {
   const std::string on = receiver.on.empty() ? "" : ", on " + scene.name_of(receiver.on);
-  return place_text(receiver.point) + ", normal " + place_text(receiver.normal) + on;
+  const bool sphere = receiver.normal == Vec3{};
+  return place_text(receiver.point) + (sphere ? ", a sphere" : ", normal " + place_text(receiver.normal)) + on;
 }
 
 std::string pad(const std::string& text, std::size_t width) {

@@ -75,8 +75,13 @@ void warn_of_face_before(const Scene& scene, const Receiver& receiver, const std
 
 void OneReceiver::add_to(CLI::App& app) {
   flags::add_vector_option(app, "--at", at, "The receiver's point")->required();
-  flags::add_vector_option(app, "--normal", normal, "The receiver's normal, of any length except zero", "NX NY NZ")
-      ->required();
+  CLI::Option* direction =
+      flags::add_vector_option(app, "--normal", normal, "The receiver's normal, of any length except zero", "NX NY NZ");
+  app.add_flag(
+         "--sphere", sphere,
+         "Instead of --normal: the receiver is a small sphere, which sees all directions. The form factor is then "
+         "the solid angle over 4 pi")
+      ->excludes(direction);
   app.add_option("--on", on,
                  "The receiver lies on this face, or on several (floor:1+2); faces exactly in their planes then "
                  "neither occlude nor illuminate it; auto or auto:DISTANCE finds them")
@@ -84,7 +89,15 @@ void OneReceiver::add_to(CLI::App& app) {
 }
 
 Receiver OneReceiver::make(const Scene& scene) const {
-  Receiver receiver{flags::vector_of(at, "--at"), flags::vector_of(normal, "--normal"), {}, ""};
+  if (!sphere && !flags::is_given(normal)) {
+    text::refuse("--normal is required", "only what lies above the receiver's horizon counts",
+                 "add --normal NX NY NZ, or --sphere for a receiver that sees all directions");
+  }
+  Receiver receiver{flags::vector_of(at, "--at"), sphere ? Vec3{} : flags::vector_of(normal, "--normal"), {}, ""};
+  if (sphere && flags::auto_face(on, scene)) {
+    text::refuse("--on " + on + " is given with --sphere", "it finds a face whose normal is the receiver's",
+                 "name the face");
+  }
   if (!on.empty()) receiver.on = own_faces(on, scene, receiver);
   return receiver;
 }
@@ -112,6 +125,7 @@ void warn_if_off_its_face(const Scene& scene, const Receiver& receiver) {
 
 void warn_of_near_face(const Scene& scene, const Receiver& receiver, const std::function<bool()>& sees_no_front,
                        const std::function<std::string(const Receiver&)>& effect) {
+  if (receiver.normal == Vec3{}) return;  // a sphere, which sees both sides of everything
   if (!receiver.on.empty()) return warn_of_own_face(scene, receiver);
   const NearFaces near = find_faces(scene, receiver, face_tolerance(scene, receiver.point));
   if (near.faces.empty()) return warn_of_face_before(scene, receiver, sees_no_front, effect);
@@ -160,9 +174,10 @@ Rgb make_reflectance(const PointArguments& args, const Scene& scene, const Recei
   return {args.reflectance.front(), args.reflectance[args.reflectance.size() / 2], args.reflectance.back()};
 }
 
-void add_shares(const Scene& scene, const Receiver& receiver, const ExactSource& source, PointTerm& result) {
+void add_shares(const Scene& scene, const PointResult& point, const ExactSource& source, PointTerm& result) {
+  const Receiver& receiver = point.receiver;
   const std::vector<FaceId> none;
-  ExactOptions options{.only_occluders = &none};
+  ExactOptions options{.measure = point.measure, .only_occluders = &none};
   const double open = exact_form_factor(scene, receiver, source, options).value;
   result.unoccluded = open;
   if (open == 0.0) return;  // an underflow: there is nothing to compare with
@@ -220,6 +235,7 @@ FormFactor exact_value(const PointArguments& args, const Scene& scene, const Poi
                        const ExactSource& source) {
   if (point.seen) return factor_in_view(*point.seen, source.selection());
   const ExactOptions options{.engine = args.engine.engine(),
+                             .measure = point.measure,
                              .visible_fraction = args.fraction || args.exact_fraction,
                              .exact_fraction = args.exact_fraction,
                              .list_cutters = args.explain || !args.svg.empty(),
@@ -241,7 +257,7 @@ PointTerm compute_source(const PointArguments& args, const Scene& scene, const P
   result.largest_rho_b = std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b});
   const double f = result.exact.value;
   result.radiosity = {rho.r * b.r * f, rho.g * b.g * f, rho.b * b.b * f};
-  if (args.explain) add_shares(scene, point.receiver, source, result);
+  if (args.explain) add_shares(scene, point, source, result);
   if (sampler) {
     result.adaptive = sampler->form_factor(point.receiver, result.source, result.largest_rho_b, adaptive_options(args));
   }
@@ -274,7 +290,8 @@ void require_one(const std::vector<Selection>& sources, const std::string& pictu
 }
 
 PointResult compute_point(const PointArguments& args, const Scene& scene) {
-  PointResult result{.receiver = args.receiver.make(scene)};
+  PointResult result{.receiver = args.receiver.make(scene),
+                     .measure = args.measure.measure(args.up, args.receiver.sphere)};
   result.reflectance = make_reflectance(args, scene, result.receiver);
   std::optional<AdaptiveSolver> sampler;
   if (args.adaptive) sampler.emplace(scene);
@@ -282,14 +299,15 @@ PointResult compute_point(const PointArguments& args, const Scene& scene) {
   if (!args.svg.empty()) require_one(sources, args.svg);
   result.every_patch = flags::names_all(scene, args.sources);
   if (one_sweep_will_do(args, scene, sources)) {
-    result.seen = view(scene, result.receiver, {.digits = args.digits, .precision_cap = args.precision_cap});
+    result.seen = view(scene, result.receiver,
+                       {.measure = result.measure, .digits = args.digits, .precision_cap = args.precision_cap});
   }
   for (const Selection& selection : sources) {
     const ExactSource source(scene, selection);
     result.sources.push_back(compute_source(args, scene, result, source, sampler));
   }
   add_up(result);
-  result.stacked = result.every_patch && has_stacked(args, scene, result);
+  result.stacked = result.every_patch && result.measure.is_form_factor() && has_stacked(args, scene, result);
   return result;
 }
 
@@ -299,9 +317,11 @@ PointResult compute_point(const PointArguments& args, const Scene& scene) {
 std::string effect_of(const Scene& scene, const PointResult& point, const Receiver& receiver) {
   std::string text;
   for (const PointTerm& one : point.sources) {
-    const FormFactor there = exact_form_factor(scene, receiver, ExactSource(scene, one.source));
+    const FormFactor there =
+        exact_form_factor(scene, receiver, ExactSource(scene, one.source), {.measure = point.measure});
     if (there.value == one.exact.value) continue;
-    text += fmt::format("{} '{}' is {} instead of {}", text.empty() ? "the form factor of" : ", of",
+    text += fmt::format("{} '{}' is {} instead of {}",
+                        text.empty() ? "the " + flags::words_of(point.measure) + " of" : ", of",
                         shown_name(scene, one.source), text::shortest(there.value), text::shortest(one.exact.value));
   }
   return text;
@@ -381,6 +401,19 @@ void refuse_along_without_gradient(const PointArguments& args) {
                "add --gradient, or remove it");
 }
 
+// What is known of the form factor alone.
+void refuse_with_another_measure(const CLI::App& command, const PointArguments& args) {
+  if (args.measure.name == "form-factor" && !args.receiver.sphere) return;
+  std::vector<std::string> idle = given(command, {"--gradient", "--adaptive"});
+  if (args.receiver.sphere) {
+    for (std::string& flag : given(command, {"--svg", "--reflectance"})) idle.push_back(std::move(flag));
+  }
+  if (idle.empty()) return;
+  text::refuse(text::enumerate(idle) + (idle.size() == 1 ? " is" : " are") + " given with " +
+                   (args.receiver.sphere ? "--sphere" : "--measure " + args.measure.name),
+               "this is known of the form factor to a surface alone", "leave it out, or ask for the form factor");
+}
+
 // These change nothing that is printed. A script may give them all the same.
 void warn_of_idle_options(const CLI::App& command, const PointArguments& args) {
   const auto warn = [&](const std::vector<std::string>& idle, const std::string& why) {
@@ -419,6 +452,7 @@ bool is_certified(const FormFactor& f) {
 int run(const CLI::App& command, const PointArguments& args) {
   refuse_settings_without_adaptive(command, args);
   refuse_along_without_gradient(args);
+  refuse_with_another_measure(command, args);
   warn_of_idle_options(command, args);
   const Scene scene = args.scene.load();
   print_warnings(scene.warnings());
@@ -472,6 +506,8 @@ void add_output_flags(CLI::App& app, PointArguments& args) {
   app.add_option("--digits", args.digits, "Number of significant digits to print, each of them certified")
       ->check(CLI::Range(1, kMostDigits));
   args.engine.add_to(app);
+  args.measure.add_to(app);
+  flags::add_vector_option(app, "--up", args.up, "Of --measure overcast: where the zenith is (default: 0 0 1)");
   app.add_option("--precision-cap", args.precision_cap, "Largest precision, in bits, of the contour integral")
       ->check(CLI::Range(32, 1 << 24))
       ->capture_default_str();

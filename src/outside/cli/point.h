@@ -22,9 +22,11 @@ namespace exactff::cli {
 
 struct OneReceiver {
   flags::ThreeNumbers at, normal;
+  bool sphere = false;  // without a normal
   std::string on;
 
   void add_to(CLI::App& app);
+  // The normal of a sphere is (0, 0, 0).
   [[nodiscard]] Receiver make(const Scene& scene) const;
 };
 
@@ -55,6 +57,8 @@ struct PointArguments {
   int digits = 0;
   int precision_cap = ExactOptions{}.precision_cap;
   flags::EngineArgument engine;
+  flags::MeasureArgument measure;
+  flags::ThreeNumbers up;
   bool fraction = false;
   bool exact_fraction = false;
   bool gradient = false;
@@ -89,6 +93,7 @@ struct PointTerm {
 
 struct PointResult {
   Receiver receiver = {};
+  Measure measure = {};
   Rgb reflectance = {};
   std::vector<PointTerm> sources = {};
   bool every_patch = false;            // --source all

@@ -145,9 +145,13 @@ void print_adaptive(const PointTerm& one) {
             << shortest(a.form_factor - one.exact.value) << ", " << a.leaves << " leaves, " << a.rays << " rays)\n";
 }
 
-void print_source(const PointArguments& args, const Scene& scene, const PointTerm& one) {
+// "form factor", padded as the words below it, or a longer one of another measure.
+std::string label_of(const PointResult& point) { return flags::words_of(point.measure) + "  "; }
+
+void print_source(const PointArguments& args, const Scene& scene, const PointResult& point, const PointTerm& one) {
   std::cout << "source " << shown_name(scene, one.source) << '\n'
-            << "  form factor  " << value_text(one.exact, args.digits) << "  (" << to_string(one.exact.status) << ")\n"
+            << "  " << label_of(point) << value_text(one.exact, args.digits) << "  (" << to_string(one.exact.status)
+            << ")\n"
             << "  enclosure    [" << shortest(one.exact.lower) << ", " << shortest(one.exact.upper) << "]\n";
   if (one.exact.visible_fraction) {
     std::cout << "  visible      " << shortest(*one.exact.visible_fraction) << "  ("
@@ -156,7 +160,8 @@ void print_source(const PointArguments& args, const Scene& scene, const PointTer
   if (args.exact_fraction) print_exact_fractions(scene, one);
   if (one.exact.gradient) print_gradient(scene, *one.exact.gradient);
   if (args.vertices) print_vertices(scene, *one.exact.gradient);
-  if (!one.emits) std::cout << "  emits        nothing (Ke 0), so it counts with a radiosity of 1\n";
+  if (!one.emits && point.measure.is_form_factor())
+    std::cout << "  emits        nothing (Ke 0), so it counts with a radiosity of 1\n";
   if (one.adaptive) print_adaptive(one);
   if (!args.explain) return;
   print_stages(scene, one);
@@ -173,8 +178,8 @@ std::optional<std::string> sum_text(const Enclosure& sum, int digits) {
   return nearest ? std::optional(shortest(*nearest)) : std::nullopt;
 }
 
-void print_sum(const PointArguments& args, const std::string& title, const Enclosure& sum) {
-  std::cout << title << "\n  form factor  " << sum_text(sum, args.digits).value_or("between the bounds")
+void print_sum(const PointArguments& args, const PointResult& point, const std::string& title, const Enclosure& sum) {
+  std::cout << title << "\n  " << label_of(point) << sum_text(sum, args.digits).value_or("between the bounds")
             << "\n  enclosure    [" << shortest(sum.lower()) << ", " << shortest(sum.upper()) << "]\n";
 }
 
@@ -224,7 +229,9 @@ std::string missing_words(const Enclosure& missing, const std::string& meaning, 
 void print_patch_table(const PointArguments& args, const Scene& scene, const PointResult& point) {
   const bool visible = args.fraction || args.exact_fraction;
   TextTable table;
-  table.add_columns({"patch", "form factor", "status"});
+  table.add_column("patch");
+  table.add_column(flags::words_of(point.measure));
+  table.add_column("status");
   if (visible) table.add_column("visible");
   if (args.adaptive) table.add_column("ray-sampled adaptive");
   table.add_column("emits");
@@ -238,8 +245,10 @@ void print_patch_table(const PointArguments& args, const Scene& scene, const Poi
   }
   table.print(std::cout);
   std::cout << "\nsum           " << sum_words(point.sum, args.digits) << "  (of "
-            << text::counted(point.sources.size(), "patch", "patches") << ", added as balls)\nmissing to 1  "
-            << missing_words(missing_to_one(point.sum), missing_meaning(scene, point), args.digits) << '\n';
+            << text::counted(point.sources.size(), "patch", "patches") << ", added as balls)\n";
+  if (!point.measure.is_form_factor()) return;
+  std::cout << "missing to 1  " << missing_words(missing_to_one(point.sum), missing_meaning(scene, point), args.digits)
+            << '\n';
   if (point.is_mixed()) {
     std::cout << "emitters      " << sum_words(point.sum_of_emitters, args.digits) << "  (the sum over the "
               << text::counted(point.emitters, "patch", "patches")
@@ -337,16 +346,17 @@ nlohmann::ordered_json gradient_json(const PointArguments& args, const Scene& sc
   return json;
 }
 
-nlohmann::ordered_json source_json(const PointArguments& args, const Scene& scene, const PointTerm& one) {
+nlohmann::ordered_json source_json(const PointArguments& args, const Scene& scene, const PointResult& point,
+                                   const PointTerm& one) {
   nlohmann::ordered_json json = {{"source", scene.name_of(one.source)},
                                  {"value", one.exact.value},
                                  {"lower", one.exact.lower},
                                  {"upper", one.exact.upper},
                                  {"status", to_string(one.exact.status)},
-                                 {"emits", one.emits},
-                                 {"radiosity", numbers_json(one.radiosity)},
-                                 {"ball", ball_json(one.exact.enclosure)},
-                                 {"bits", one.exact.precision_bits}};
+                                 {"emits", one.emits}};
+  if (point.measure.is_form_factor()) json["radiosity"] = numbers_json(one.radiosity);
+  json["ball"] = ball_json(one.exact.enclosure);
+  json["bits"] = one.exact.precision_bits;
   if (args.digits > 0) json["decimals"] = value_text(one.exact, args.digits);
   if (one.exact.visible_fraction) {
     json["visible_fraction"] = *one.exact.visible_fraction;
@@ -404,17 +414,19 @@ void print_point_table(const PointArguments& args, const Scene& scene, const Poi
   std::cout << "\n\n";
   const bool blocks = !point.every_patch || args.explain || args.exact_fraction || args.gradient;
   for (const PointTerm& one : point.sources) {
-    if (blocks) print_source(args, scene, one);
+    if (blocks) print_source(args, scene, point, one);
   }
   if (point.every_patch) {
     if (blocks) std::cout << '\n';
     print_patch_table(args, scene, point);
   } else if (point.sources.size() > 1) {
-    print_sum(args, "sum of " + text::counted(point.sources.size(), "source"), point.sum);
-    if (point.is_mixed())
-      print_sum(args, fmt::format("sum of the {} that {}", point.emitters, point.emitters == 1 ? "emits" : "emit"),
+    print_sum(args, point, "sum of " + text::counted(point.sources.size(), "source"), point.sum);
+    if (point.is_mixed() && point.measure.is_form_factor())
+      print_sum(args, point,
+                fmt::format("sum of the {} that {}", point.emitters, point.emitters == 1 ? "emits" : "emit"),
                 point.sum_of_emitters);
   }
+  if (!point.measure.is_form_factor()) return;
   std::cout << "\nradiosity received  " << rgb_text(point.radiosity) << "  " << radiosity_words(point) << '\n';
 }
 
@@ -431,9 +443,18 @@ void print_point_json(const PointArguments& args, const Scene& scene, const Poin
   if (const std::optional<FaceId> cover = buried_under(scene, point.receiver)) {
     json["receiver"]["buried_under"] = scene.name_of(*cover);
   }
+  if (point.receiver.normal == Vec3{}) json["receiver"]["normal"] = nullptr;  // a sphere
+  if (!point.measure.is_form_factor()) {
+    json["measure"] = to_string(point.measure.kind);
+    if (point.measure.kind == MeasureKind::kOvercast) json["up"] = numbers_json(point.measure.up);
+  }
   json["sources"] = nlohmann::ordered_json::array();
-  for (const PointTerm& one : point.sources) json["sources"].push_back(source_json(args, scene, one));
+  for (const PointTerm& one : point.sources) json["sources"].push_back(source_json(args, scene, point, one));
   json["sum"] = sum_json(point.sum);
+  if (!point.measure.is_form_factor()) {
+    std::cout << text::json_document(json) << '\n';
+    return;
+  }
   if (point.is_mixed()) json["sum_of_emitters"] = sum_json(point.sum_of_emitters);
   if (point.every_patch) json["missing_to_1"] = sum_json(missing_to_one(point.sum));
   json["radiosity"] = numbers_json(point.radiosity);

@@ -215,7 +215,9 @@ struct RenderArguments {
   std::string size = "512x512";
   int spp = 1;
   bool two_sided = false;
-  std::string quantity = "radiance";
+  std::string quantity;
+  flags::MeasureArgument measure;
+  bool sphere = false;
   std::string ke = "radiosity";
   std::string method, against;
   bool strip = false;
@@ -322,7 +324,9 @@ render::Request request_of(const RenderArguments& args, const flags::LitScene& l
   request.sources = std::move(sources.sources);
   request.sky = sources.sky;
   request.method = std::move(method);
-  request.quantity = quantity_named(args.quantity).value_or(Quantity::kRadiance);
+  request.measure = args.measure.measure(args.camera.up, args.sphere);
+  const Quantity usual = request.measure.is_form_factor() ? Quantity::kRadiance : Quantity::kFormFactor;
+  request.quantity = quantity_named(args.quantity).value_or(usual);
   if (args.quantity == "gradient") request.shown = render::Shown::kSlope;
   request.ke = args.ke == "radiance" ? KeMeans::kRadiance : KeMeans::kRadiosity;
   request.sides = args.two_sided ? render::Sides::kBoth : render::Sides::kFront;
@@ -454,11 +458,13 @@ void add_camera_flags(CLI::App& app, RenderArguments& args) {
 
 void add_value_flags(CLI::App& app, RenderArguments& args) {
   app.add_flag("--two-sided", args.two_sided, "Light the backs of faces, too, instead of showing them black");
+  args.measure.add_to(app);
+  app.add_flag("--sphere", args.sphere, "Of a small sphere at the point, which sees both sides of the face");
   app.add_option("--quantity", args.quantity,
                  "What a pixel holds: the radiance B / pi, the radiosity B, the irradiance, the sum of form factors, "
-                 "or the length of its gradient along the surface")
-      ->check(CLI::IsMember({"radiance", "radiosity", "irradiance", "form-factor", "gradient"}))
-      ->capture_default_str();
+                 "or the length of its gradient along the surface (default: radiance; form-factor with --measure or "
+                 "--sphere, which then is the sum of that measure)")
+      ->check(CLI::IsMember({"radiance", "radiosity", "irradiance", "form-factor", "gradient"}));
   app.add_option("--ke", args.ke, "What Ke means in the scene")
       ->check(CLI::IsMember({"radiosity", "radiance"}))
       ->capture_default_str();

@@ -97,6 +97,8 @@ struct TruthArguments {
   bool unoccluded = false;
   bool fraction = false;
   bool gradient = false;
+  std::string measures;
+  flags::ThreeNumbers up;
   bool unit_normals = false;
   bool uv = false;
   std::string total, ke;
@@ -117,6 +119,22 @@ struct TruthArguments {
   }
   [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
 };
+
+// "sphere" stands for the form factor from a small sphere.
+std::vector<Measure> measures_named(const TruthArguments& args) {
+  std::vector<Measure> measures;
+  if (args.measures.empty()) return measures;
+  for (const std::string& name : flags::split_list(args.measures)) {
+    Measure measure{.kind = measure_named(name).value_or(MeasureKind::kFormFactor), .sphere = name == "sphere"};
+    if (flags::is_given(args.up)) measure.up = flags::vector_of(args.up, "--up");
+    if (measure.is_form_factor()) {
+      text::refuse("--measure: " + text::in_quotes(name) + " is no column", "every row has the form factor",
+                   "choose solid-angle, overcast, sphere, or several, separated by commas");
+    }
+    measures.push_back(measure);
+  }
+  return measures;
+}
 
 // A request and the scene that it refers to.
 struct Job {
@@ -149,6 +167,7 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const jobs::Team* team) 
   request.unoccluded = args.unoccluded;
   request.visible_fraction = args.fraction;
   request.gradient = args.gradient;
+  request.measures = measures_named(args);
   request.unit_normals = args.unit_normals;
   request.uv = args.uv;
   request.total = args.quantity();
@@ -313,6 +332,13 @@ Command add_truth(CLI::App& app) {
       "--gradient", args->gradient,
       "Add columns: the derivatives of the form factor by the receiver's point (dF_dx, dF_dy, dF_dz, per unit of "
       "length; empty where they do not exist) and their status (certified, zero, underflow, enclosed or kink)");
+  command
+      ->add_option("--measure", args->measures,
+                   "Add a column for each: solid-angle (in sr), overcast (the sky component of a daylight factor, of "
+                   "the sky behind the source), sphere (the form factor from a small sphere at the point). All are "
+                   "correctly rounded")
+      ->type_name("NAME[,NAME]");
+  flags::add_vector_option(*command, "--up", args->up, "Of --measure overcast: where the zenith is (default: 0 0 1)");
   command->add_flag("--unit-normals", args->unit_normals,
                     "Add columns ux,uy,uz: the normal scaled to length 1, correctly rounded; the values belong to the "
                     "exact normals in nx,ny,nz");

@@ -21,6 +21,7 @@
 #include "text/json_document.h"
 #include "text/names.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "vtk/vtk.h"
 #include "whole_view/referee.h"
 
@@ -36,6 +37,7 @@ constexpr const char* kBuried = "(buried)";
 struct ViewArguments {
   flags::SceneArguments scene;
   OneReceiver receiver;
+  flags::MeasureArgument measure;
   int digits = 0;
   int precision_cap = ViewOptions{}.precision_cap;
   std::string engine = "edges";
@@ -81,7 +83,15 @@ std::string status_text(const SeenPatch& patch) {
   return std::string(to_string(certified ? patch.form_factor.status : patch.share.status)) + ", stacked";
 }
 
-void print_table(const ViewArguments& args, const Scene& scene, const Receiver& receiver, const WholeView& seen) {
+// What all shares add up to.
+std::string words_of_whole(const Measure& measure, const Receiver& receiver) {
+  if (measure.kind == MeasureKind::kSolidAngle) return measure.sphere ? "4 pi" : "2 pi";
+  const bool all_of_the_sky = measure.kind != MeasureKind::kOvercast || receiver.normal == measure.up;
+  return all_of_the_sky ? "1" : "what x would receive of an open sky";
+}
+
+void print_table(const ViewArguments& args, const Scene& scene, const Receiver& receiver, const Measure& measure,
+                 const WholeView& seen) {
   std::vector<const SeenPatch*> by_size;
   for (const SeenPatch& patch : seen.patches) by_size.push_back(&patch);
   std::ranges::stable_sort(by_size, std::ranges::greater{}, [](const SeenPatch* patch) { return patch->share.value; });
@@ -89,8 +99,8 @@ void print_table(const ViewArguments& args, const Scene& scene, const Receiver& 
   std::cout << "receiver " << text::printable(receiver_text(scene, receiver)) << "\n\n";
   TextTable table;
   table.add_column("patch");
-  table.add_column(stacked ? "share of the view" : "form factor");
-  if (stacked) table.add_column("form factor");
+  table.add_column(stacked ? "share of the view" : flags::words_of(measure));
+  if (stacked) table.add_column(flags::words_of(measure));
   table.add_column("status");
   const auto add = [&](const std::string& name, const ViewShare& share, const SeenPatch* patch) {
     std::vector<std::string> cells{name, number(args, share)};
@@ -112,7 +122,8 @@ void print_table(const ViewArguments& args, const Scene& scene, const Receiver& 
   for (const SeenPatch& patch : seen.patches) fronts += patch.share.enclosure;
   std::cout << "\nfronts  " << sum_words(fronts, args.digits) << "  (of "
             << text::counted(seen.patches.size(), "patch", "patches")
-            << "; with (back), backs of faces, and (open), directions that meet nothing: 1)\n";
+            << "; with (back), backs of faces, and (open), directions that meet nothing: "
+            << words_of_whole(measure, receiver) << ")\n";
   if (stacked) {
     std::cout << "stacked: in one plane with the front of another patch, which comes first in the file and has the "
                  "share of the view; each keeps its full form factor\n";
@@ -120,9 +131,11 @@ void print_table(const ViewArguments& args, const Scene& scene, const Receiver& 
 }
 
 // With --digits, numbers are the decimals that were asked for.
-void print_csv(const ViewArguments& args, const Scene& scene, const Receiver& receiver, const WholeView& seen) {
+void print_csv(const ViewArguments& args, const Scene& scene, const Receiver& receiver, const Measure& measure,
+               const WholeView& seen) {
   table::Head head;
   head.set("about", std::string("shares of what is seen, correctly rounded, between proved bounds"));
+  if (!measure.is_form_factor()) head.set("measure", flags::words_of(measure));
   head.set("scene", args.scene.path);
   head.set("scene_hash", scene.hash());
   head.set("receiver", receiver_text(scene, receiver));
@@ -173,15 +186,20 @@ nlohmann::ordered_json regions_json(const Scene& scene, const VisibilityMesh& me
   return json;
 }
 
-void print_json(const ViewArguments& args, const Scene& scene, const Receiver& receiver, const WholeView& seen,
-                const std::optional<VisibilityMesh>& mesh) {
+void print_json(const ViewArguments& args, const Scene& scene, const Receiver& receiver, const Measure& measure,
+                const WholeView& seen, const std::optional<VisibilityMesh>& mesh) {
   nlohmann::ordered_json json = {
       {"program", "exactff"},
       {"version", kVersion},
       {"scene", args.scene.path},
       {"scene_hash", scene.hash()},
       {"receiver", {{"point", numbers(receiver.point)}, {"normal", numbers(receiver.normal)}}}};
+  if (measure.sphere) json["receiver"]["normal"] = nullptr;
   if (!receiver.on.empty()) json["receiver"]["on"] = scene.name_of(receiver.on);
+  if (!measure.is_form_factor()) {
+    json["measure"] = to_string(measure.kind);
+    if (measure.kind == MeasureKind::kOvercast) json["up"] = numbers(measure.up);
+  }
   json["patches"] = nlohmann::ordered_json::array();
   for (const SeenPatch& patch : seen.patches) {
     nlohmann::ordered_json one = {{"patch", scene.patch(patch.patch).name}};
@@ -260,12 +278,20 @@ std::string change_of_view(const Scene& scene, const WholeView& here, const Whol
   return found == changes.end() ? std::string() : *found;
 }
 
+void refuse_pictures_of_spheres(const ViewArguments& args) {
+  if (!args.receiver.sphere || (args.svg.empty() && args.mesh.empty())) return;
+  text::refuse(std::string(args.svg.empty() ? "--mesh" : "--svg") + " is given with --sphere",
+               "it shows what lies above the horizon of a normal", "give --normal, once for each side");
+}
+
 int run(const ViewArguments& args) {
+  refuse_pictures_of_spheres(args);
   if (!args.mesh.empty()) require_free_file(args.mesh, args.force);
   const Scene scene = args.scene.load();
   print_warnings(scene.warnings());
   const Receiver receiver = args.receiver.make(scene);
-  const ViewOptions options{.digits = args.digits, .precision_cap = args.precision_cap};
+  const Measure measure = args.measure.measure(args.up, args.receiver.sphere);
+  const ViewOptions options{.measure = measure, .digits = args.digits, .precision_cap = args.precision_cap};
   const WholeView seen = view(scene, receiver, options);
   if (args.engine == "both") whole_view::require_agreement(scene, receiver, options, seen);
   std::optional<VisibilityMesh> mesh;
@@ -279,11 +305,11 @@ int run(const ViewArguments& args) {
   if (args.plain) {
     print_plain(args, scene, seen);
   } else if (args.json) {
-    print_json(args, scene, receiver, seen, mesh);
+    print_json(args, scene, receiver, measure, seen, mesh);
   } else if (args.csv) {
-    print_csv(args, scene, receiver, seen);
+    print_csv(args, scene, receiver, measure, seen);
   } else {
-    print_table(args, scene, receiver, seen);
+    print_table(args, scene, receiver, measure, seen);
   }
   check_output(std::cout);
   bool certified = true;
@@ -302,6 +328,7 @@ void add_output_flags(CLI::App& app, ViewArguments& args) {
                  "and by Booleans; it does not affect the values")
       ->capture_default_str()
       ->check(CLI::IsMember({"edges", "both"}));
+  args.measure.add_to(app);
   app.add_option("--precision-cap", args.precision_cap, "Largest precision, in bits, of the contour integral")
       ->check(CLI::Range(32, 1 << 24))
       ->capture_default_str();
@@ -330,9 +357,9 @@ void add_file_flags(CLI::App& app, ViewArguments& args) {
                                          flags::Format::kMesh, flags::Beside::kMaterials);
   app.add_flag("--force", args.force, "Replace an existing file of --mesh")->needs(mesh);
   flags::add_vector_option(app, "--up", args.up,
-                           "The direction that points upwards in the picture (default: 0 0 1 if more area of fronts "
-                           "looks along +z than along +y; else 0 1 0)")
-      ->needs(svg);
+                           "The direction that points upwards: in the picture (default: 0 0 1 if more area of fronts "
+                           "looks along +z than along +y; else 0 1 0), and to the zenith of --measure overcast "
+                           "(default: 0 0 1)");
 }
 
 }  // namespace

@@ -174,6 +174,33 @@ render::CameraWishes CameraArguments::wishes() const {
   return wishes;
 }
 
+void MeasureArgument::add_to(CLI::App& app) {
+  app.add_option(
+         "--measure", name,
+         "form-factor; solid-angle: in sr, of what lies above the horizon; overcast: what the receiver gets of "
+         "the CIE overcast sky behind the source, over what open ground gets of all of it: the sky component of "
+         "a daylight factor. Below the horizon of --up (default: 0 0 1) there is no sky")
+      ->type_name("NAME")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"form-factor", "solid-angle", "overcast"}));
+}
+
+Measure MeasureArgument::measure(const ThreeNumbers& up, bool sphere) const {
+  Measure measure{.kind = *measure_named(name), .sphere = sphere};
+  if (measure.kind != MeasureKind::kOvercast) return measure;
+  if (is_given(up)) measure.up = vector_of(up, "--up");
+  if (measure.up == Vec3{}) text::refuse("--up is (0, 0, 0)", "nothing then says where the sky is", "give a direction");
+  if (!sphere) return measure;
+  text::refuse("--measure overcast is given with --sphere", "illuminance needs a surface with a normal",
+               "give --normal, or --measure solid-angle");
+}
+
+std::string words_of(const Measure& measure) {
+  if (measure.kind == MeasureKind::kSolidAngle) return "solid angle in sr";
+  if (measure.kind == MeasureKind::kOvercast) return "overcast sky";
+  return measure.sphere ? "form factor of the sphere" : "form factor";
+}
+
 render::Camera CameraArguments::camera(const Scene& scene) const {
   render::Camera camera{.eye = vector_of(eye, "--eye"), .look = vector_of(look, "--look")};
   camera.up = is_given(up) ? wishes().up : render::upwards(scene);

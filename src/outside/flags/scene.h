@@ -72,6 +72,17 @@ struct CameraArguments {
   [[nodiscard]] render::CameraWishes wishes() const;
 };
 
+// What is integrated over what is seen.
+struct MeasureArgument {
+  std::string name = "form-factor";
+
+  void add_to(CLI::App& app);
+  // `up`: of --up.
+  [[nodiscard]] Measure measure(const ThreeNumbers& up, bool sphere = false) const;
+};
+// "form factor", "solid angle in sr", ...
+[[nodiscard]] std::string words_of(const Measure& measure);
+
 struct EngineArgument {
   std::string name = "edges";
 

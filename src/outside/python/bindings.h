@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -76,6 +78,10 @@ class ArrayReceivers {
   py::detail::unchecked_reference<double, 2> points_, normals_;
   py::detail::unchecked_reference<std::int64_t, 2> on_;
 };
+
+// Name, up, sphere; checked in Python.
+using MeasureTuple = std::tuple<std::string, std::array<double, 3>, bool>;
+[[nodiscard]] Measure measure_of(const MeasureTuple& measure);
 
 // Ctrl-C and progress while the library computes without the GIL: hooks for work that the thread calls which made this
 // object. Signals are looked at in that thread; Python handles them in its main thread alone. What the handler or the

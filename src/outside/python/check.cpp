@@ -238,7 +238,8 @@ jobs::Existing existing_of(const std::string& word) {
 py::tuple write_rows(const SharedScene& scene, const std::string& scene_name, const std::vector<Receiver>& receivers,
                      const std::string& receivers_name, const std::vector<std::string>& sources,
                      const std::filesystem::path& file, const std::string& existing,
-                     const std::vector<std::string>& columns, int threads, const py::object& progress) {
+                     const std::vector<std::string>& columns, const std::vector<MeasureTuple>& measures, int threads,
+                     const py::object& progress) {
   const auto wanted = [&](const char* column) { return std::ranges::find(columns, column) != columns.end(); };
   truth::Request request;
   request.scene = &scene.scene();
@@ -253,6 +254,7 @@ py::tuple write_rows(const SharedScene& scene, const std::string& scene_name, co
   request.unit_normals = wanted("unit_normals");
   request.uv = wanted("uv");
   request.gradient = wanted("gradient");
+  for (const MeasureTuple& measure : measures) request.measures.push_back(measure_of(measure));
   request.threads = threads;
   Interrupt interrupt(progress);
   const truth::Summary summary = interrupt.run([&] {
@@ -269,7 +271,7 @@ py::tuple write_rows(const SharedScene& scene, const std::string& scene_name, co
 void bind_truth(py::module_& module) {
   module.def("write_truth", &write_rows, py::arg("scene"), py::arg("scene_name"), py::arg("receivers"),
              py::arg("receivers_name"), py::arg("sources"), py::arg("file"), py::arg("existing"), py::arg("columns"),
-             py::arg("threads"), py::arg("progress"));
+             py::arg("measures"), py::arg("threads"), py::arg("progress"));
 }
 
 }  // namespace exactff::python

@@ -12,6 +12,12 @@
 #include "truth/unit_normal.h"
 
 namespace exactff::python {
+
+Measure measure_of(const MeasureTuple& measure) {
+  const auto& [name, up, sphere] = measure;
+  return {*measure_named(name), {up[0], up[1], up[2]}, sphere};
+}
+
 namespace {
 
 void bind_enclosure(py::module_& module) {
@@ -97,7 +103,7 @@ std::optional<std::size_t> take_sky(const Scene& scene, std::vector<std::string>
 // Value, status, lower, upper, bits, fraction, gradient and its status (receivers, 3 sources).
 py::tuple form_factors_of(const SharedScene& scene, const Numbers& points, const Numbers& normals, const Integers& on,
                           std::vector<std::string> names, bool full, bool fraction, bool gradient, int precision_cap,
-                          int threads, const py::object& progress) {
+                          int threads, const py::object& progress, const MeasureTuple& measure) {
   const ArrayReceivers receivers(points, normals, on);
   const std::optional<std::size_t> sky = take_sky(scene.scene(), names);
   std::vector<std::shared_ptr<const ExactSource>> sources;
@@ -109,7 +115,10 @@ py::tuple form_factors_of(const SharedScene& scene, const Numbers& points, const
   }
   const std::size_t columns = list.size() + (sky ? 1 : 0);
   Tables out(receivers.count(), columns, full, fraction, gradient);
-  const ExactOptions options{.visible_fraction = fraction, .gradient = gradient, .precision_cap = precision_cap};
+  const ExactOptions options{.measure = measure_of(measure),
+                             .visible_fraction = fraction,
+                             .gradient = gradient,
+                             .precision_cap = precision_cap};
   Interrupt interrupt(progress);
   interrupt.run([&] {
     const batch::Run run{threads, interrupt.hooks()};
@@ -161,14 +170,16 @@ std::shared_ptr<Pair> pair_of(const std::shared_ptr<SharedScene>& scene, const s
                               const std::array<double, 3>& normal, const std::vector<std::uint32_t>& on,
                               const std::string& source, bool fraction, bool list_cutters, bool gradient, bool vertices,
                               int digits, int precision_cap,
-                              const std::optional<std::vector<std::uint32_t>>& only_occluders) {
+                              const std::optional<std::vector<std::uint32_t>>& only_occluders,
+                              const MeasureTuple& measure) {
   Receiver receiver{{point[0], point[1], point[2]}, {normal[0], normal[1], normal[2]}, {}, {}};
   for (const std::uint32_t face : on) receiver.on.push_back(static_cast<FaceId>(face));
   std::vector<FaceId> only;
   for (const std::uint32_t face : only_occluders.value_or(std::vector<std::uint32_t>{})) {
     only.push_back(static_cast<FaceId>(face));
   }
-  const ExactOptions options{.visible_fraction = fraction,
+  const ExactOptions options{.measure = measure_of(measure),
+                             .visible_fraction = fraction,
                              .exact_fraction = fraction,
                              .list_cutters = list_cutters,
                              .gradient = gradient,
@@ -252,10 +263,10 @@ void bind_form_factors(py::module_& module) {
   bind_pair(module);
   module.def("form_factors", &form_factors_of, py::arg("scene"), py::arg("points"), py::arg("normals"), py::arg("on"),
              py::arg("sources"), py::arg("full"), py::arg("fraction"), py::arg("gradient"), py::arg("precision_cap"),
-             py::arg("threads"), py::arg("progress"));
+             py::arg("threads"), py::arg("progress"), py::arg("measure"));
   module.def("form_factor", &pair_of, py::arg("scene"), py::arg("point"), py::arg("normal"), py::arg("on"),
              py::arg("source"), py::arg("fraction"), py::arg("list_cutters"), py::arg("gradient"), py::arg("vertices"),
-             py::arg("digits"), py::arg("precision_cap"), py::arg("only_occluders"));
+             py::arg("digits"), py::arg("precision_cap"), py::arg("only_occluders"), py::arg("measure"));
   module.def(
       "status_name", [](int status) { return std::string(to_string(static_cast<Status>(status))); }, py::arg("status"));
 }

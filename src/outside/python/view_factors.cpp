@@ -192,13 +192,16 @@ py::tuple to_tuple(const ViewShare& share) {
 // For each patch or face that is seen: name, form factor, share, stacked. Then back, open, and the name of the face
 // that buries the receiver.
 py::tuple view_of(const SharedScene& scene, const std::array<double, 3>& point, const std::array<double, 3>& normal,
-                  const std::vector<std::uint32_t>& on, bool faces, int digits, int precision_cap) {
+                  const std::vector<std::uint32_t>& on, bool faces, int digits, int precision_cap,
+                  const MeasureTuple& measure) {
   const Scene& in = scene.scene();
   Receiver receiver{{point[0], point[1], point[2]}, {normal[0], normal[1], normal[2]}, {}, {}};
   for (const std::uint32_t face : on) receiver.on.push_back(static_cast<FaceId>(face));
   Interrupt interrupt;
-  const WholeView seen = interrupt.run(
-      [&] { return view(in, receiver, {.faces = faces, .digits = digits, .precision_cap = precision_cap}); });
+  const WholeView seen = interrupt.run([&] {
+    return view(in, receiver,
+                {.faces = faces, .measure = measure_of(measure), .digits = digits, .precision_cap = precision_cap});
+  });
   py::list rows;
   for (const SeenPatch& patch : seen.patches) {
     rows.append(py::make_tuple(in.name_of(Selection{patch.patch, patch.face}), to_tuple(patch.form_factor),
@@ -223,7 +226,7 @@ void bind_view_factors(py::module_& module) {
              py::arg("open"), py::arg("both_directions"), py::arg("threads"), py::arg("progress"));
   module.def("with_two_sided", &with_two_sided_of, py::arg("scene"), py::arg("names"));
   module.def("view", &view_of, py::arg("scene"), py::arg("point"), py::arg("normal"), py::arg("on"), py::arg("faces"),
-             py::arg("digits"), py::arg("precision_cap"));
+             py::arg("digits"), py::arg("precision_cap"), py::arg("measure"));
 }
 
 // --- radiosities after all bounces ---

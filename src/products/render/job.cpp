@@ -5,6 +5,7 @@
 
 #include "exactff/version.h"
 #include "jobs/kept_work.h"
+#include "kernel/float_environment.h"
 #include "scene/scene.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -89,6 +90,12 @@ void Job::require_possible() const {
                         : "sky is a source, and layers are requested",
         request_.method ? "such methods know patches only" : "the sky has no area of which a fraction is visible",
         request_.method ? "leave out sky or --method" : "leave out sky or --layers");
+  }
+  if (!request_.measure.is_form_factor() && (request_.quantity != Quantity::kFormFactor || request_.method ||
+                                             request_.radiosities || request_.shown == Shown::kSlope)) {
+    text::refuse("another measure than the form factor is requested together with light, a method or the gradient",
+                 "it is a sum over the sources, whatever they emit, and only its exact value is known",
+                 "ask for the quantity form-factor, and leave out --method, --against METHOD and --radiosity");
   }
   if (request_.bounds == Bounds::kAll && request_.method) {
     text::refuse("bounds are requested of a picture by an approximate method", "such a method proves nothing",
@@ -182,8 +189,9 @@ Metadata Job::metadata() const {
       {"scene", text::printable(request_.scene_name)},
       {"scene hash", scene.hash()},
       {"camera", flags_of(request_.view)},
-      {"quantity", slope
-                       ? "slope of the form factors along the surface, per unit of length"
+      {"quantity", slope ? "slope of the form factors along the surface, per unit of length"
+                   : !request_.measure.is_form_factor()
+                       ? words_of_measure(request_.measure)
                        : std::string(to_string(request_.quantity)) + ", in " + unit_of(request_.quantity, request_.ke)},
       {"Ke", request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity"},
       {"sides", request_.sides == Sides::kBoth ? "both" : "front"},
@@ -225,9 +233,19 @@ whole_view::LightFormula Job::formula(FaceId face, bool back) const {
 
 // --- Identity ---
 
+std::string words_of_measure(const Measure& measure) {
+  std::string words(to_string(measure.kind));
+  if (measure.sphere) words += " of a sphere";
+  if (measure.kind != MeasureKind::kOvercast) return words;
+  words += ", up";
+  for (const double c : {measure.up.x, measure.up.y, measure.up.z}) words += ' ' + text::shortest(c);
+  return words;
+}
+
 std::string identity_of(const Request& request, const std::optional<methods::Choice>& against) {
   std::string all =
       request.scene->hash() + '\n' + flags_of(request.view) + '\n' + std::string(to_string(request.quantity)) + '\n';
+  if (!request.measure.is_form_factor()) all += words_of_measure(request.measure) + '\n';
   for (const Selection& source : request.sources) all += request.scene->name_of(source) + '\n';
   if (request.sky) all += "and the sky\n";
   if (request.radiosities) all += "radiosities of " + request.radiosities->name + '\n';

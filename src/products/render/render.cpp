@@ -268,6 +268,7 @@ double of_visible(const FormFactor& factor) {
 Painter::Painter(const Job& job) : job_(job) {
   options_.engine = job.request().engine;
   options_.visible_fraction = job.request().layers == Layers::kAll;
+  options_.measure = job.request().measure;
   options_.gradient = job.request().shown == Shown::kSlope;
   if (job.prepared() == nullptr) return;
   evaluator_ = job.prepared()->configure(job.request().method->settings);

@@ -95,8 +95,21 @@ Field derivative_status(std::string name) {
 struct Wanted {
   bool unit_normals = true, uv = true, unoccluded = true, visible_fraction = true, gradient = true, total = true,
        total_bounds = true;
+  std::array<bool, 3> measures{true, true, true};
   std::string unit_of_total = "Ke";
 };
+
+template <std::size_t Index>
+Field measure(std::string name, std::string unit) {
+  return number < [](auto& row) -> auto& { return row.measures[Index]; }
+  > (std::move(name), std::move(unit), Strength::kCertified);
+}
+
+void add_measures(std::vector<Field>& list, const std::array<bool, 3>& wanted) {
+  if (wanted[0]) list.push_back(measure<0>("solid_angle", "sr"));
+  if (wanted[1]) list.push_back(measure<1>("overcast", ""));
+  if (wanted[2]) list.push_back(measure<2>("sphere", ""));
+}
 
 std::vector<Field> fields(const Wanted& wanted) {
   std::vector<Field> list = {text<&Row::receiver>("receiver", true), text<&Row::on>("on")};
@@ -118,6 +131,7 @@ std::vector<Field> fields(const Wanted& wanted) {
   if (wanted.visible_fraction) {
     list.push_back(one<&Row::visible_fraction>("visible_fraction", "", Strength::kCertified));
   }
+  add_measures(list, wanted.measures);
   if (wanted.gradient) {
     add_vector<&Row::gradient>(list, {"dF_dx", "dF_dy", "dF_dz"}, "1/length", Strength::kCertified);
     list.push_back(derivative_status<0>("dF_dx_status"));
@@ -141,7 +155,13 @@ double Row::certified(double number) const {
   return status == Status::kNotCertified ? std::numeric_limits<double>::quiet_NaN() : number;
 }
 
+std::size_t measure_column(const Measure& measure) {
+  return measure.sphere ? 2 : measure.kind == MeasureKind::kOvercast ? 1 : 0;
+}
+
 Columns columns_of(const Request& request) {
+  std::array<bool, 3> measures{};
+  for (const Measure& measure : request.measures) measures[measure_column(measure)] = true;
   return {"truth", fields({.unit_normals = request.unit_normals,
                            .uv = request.uv,
                            .unoccluded = request.unoccluded,
@@ -149,6 +169,7 @@ Columns columns_of(const Request& request) {
                            .gradient = request.gradient,
                            .total = request.total.has_value(),
                            .total_bounds = request.radiosities.has_value(),
+                           .measures = measures,
                            .unit_of_total = request.total ? unit_of(*request.total, request.ke) : ""})};
 }
 

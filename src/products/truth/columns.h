@@ -20,7 +20,8 @@ struct Row {
   double unoccluded = 0.0;
   Status unoccluded_status = Status::kZero;
   double visible_fraction = 0.0;
-  Vec3 gradient;  // NaN at a kink
+  std::array<double, 3> measures{};  // by measure_column()
+  Vec3 gradient;                     // NaN at a kink
   std::array<DerivativeStatus, 3> gradient_status{};
   bool kink = false;
   Rgb radiosity;  // rho B F of each channel, rounded
@@ -31,6 +32,9 @@ struct Row {
   // The number, or NaN where it is only an estimate.
   [[nodiscard]] double certified(double number) const;
 };
+
+// The index of a measure's column.
+[[nodiscard]] std::size_t measure_column(const Measure& measure);
 
 using Columns = table::Fields<Row>;
 

@@ -4,9 +4,11 @@
 #include <array>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include "files/parallel.h"
 #include "kernel/numbers.h"
+#include "kernel/vec.h"
 #include "scene/scene.h"
 #include "text/hashes.h"
 #include "text/phrases.h"
@@ -27,6 +29,22 @@ std::string hash_of(const std::vector<Receiver>& receivers) {
     hash.add(std::uint64_t{receiver.id.size()});
   }
   return hash.digits();
+}
+
+void require_measures(const std::vector<Measure>& measures) {
+  std::array<bool, 3> has{};
+  for (const Measure& measure : measures) {
+    const bool both = measure.sphere && measure.kind != MeasureKind::kFormFactor;
+    if (measure.is_form_factor() || both || std::exchange(has[measure_column(measure)], true)) {
+      text::refuse("a measure is requested twice, or has no column",
+                   "a row has the form factor, and once each: the solid angle, the overcast sky, the sphere",
+                   "leave it out");
+    }
+    if (measure.kind == MeasureKind::kOvercast && (!kernel::is_finite(measure.up) || measure.up == Vec3{})) {
+      text::refuse("the direction upwards is zero or not finite", "an overcast sky is brightest there",
+                   "give three finite numbers that are not all 0");
+    }
+  }
 }
 
 Request completed(Request request) {
@@ -55,6 +73,7 @@ Request completed(Request request) {
     text::refuse("radiosities are given, but no quantity of light is requested", "they are for the totals of a row",
                  "add --total irradiance, radiance or radiosity");
   }
+  require_measures(request.measures);
   jobs::require_shard(request.shard);
   if (request.threads <= 0) request.threads = files::usable_threads();
   return request;
@@ -99,6 +118,11 @@ void Rows::describe(const std::vector<std::string>& near_misses) {
   about_.set("receivers_hash", hash_of(request_.receivers));
   about_.set("sources", source_names_);
   if (!near_misses.empty()) about_.set("warnings", near_misses);
+  for (const Measure& measure : request_.measures) {
+    if (measure.kind != MeasureKind::kOvercast) continue;
+    about_.set("up",
+               text::shortest(measure.up.x) + ' ' + text::shortest(measure.up.y) + ' ' + text::shortest(measure.up.z));
+  }
   if (request_.total) {
     about_.set("total", std::string(to_string(*request_.total)));
     about_.set("total_of", std::string(gather_ ? "all patches, with their radiosities" : "all sources"));
@@ -166,6 +190,11 @@ void Rows::compute(std::uint64_t number_of_row, Results& results) const {
     keep_worst(free.status != Status::kNotCertified);
   }
   if (request_.visible_fraction) row.visible_fraction = f.visible_fraction.value_or(0.0);
+  for (const Measure& measure : request_.measures) {
+    const FormFactor& measured = find_measure(number, source, measure, results);
+    row.measures[measure_column(measure)] = measured.value;
+    keep_worst(measured.status != Status::kNotCertified);
+  }
   if (request_.gradient) {
     row.kink = f.gradient->kink.has_value();
     const auto& [x, y, z] = f.gradient->position;
@@ -212,6 +241,19 @@ const FormFactor& Rows::factor(std::size_t receiver, std::size_t source, Results
   }
   if (results.known != receiver) find_all(receiver, options, results);
   return results.all.at.factors[source];
+}
+
+const FormFactor& Rows::find_measure(std::size_t receiver, std::size_t source, const Measure& measure,
+                                     Results& results) const {
+  const ExactOptions options{.engine = request_.engine, .measure = measure};
+  Results::Measured& found = results.measured[measure_column(measure)];
+  if (!sources_->sweeps(options)) {
+    sources_->find_one(request_.receivers[receiver], source, options, found.one, results.all.at);
+    return found.one;
+  }
+  if (found.known != receiver) sources_->find_all(request_.receivers[receiver], options, found.all, results.all.at);
+  found.known = receiver;
+  return found.all[source];
 }
 
 // Those of the sources come with their form factors.

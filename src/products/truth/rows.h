@@ -31,6 +31,12 @@ class Rows : public jobs::Rows {
   // Objects that a thread reuses from row to row, only to avoid reallocation.
   struct Results {
     FormFactor exact, unoccluded;
+    struct Measured {
+      FormFactor one;
+      std::vector<FormFactor> all;       // of all sources at one receiver,
+      std::optional<std::size_t> known;  // this one
+    };
+    std::array<Measured, 3> measured;  // by measure_column()
     UnitNormal unit_normal;
     whole_view::Light::Results all;       // of all sources at one receiver
     whole_view::Light::Results gathered;  // of all patches, for given radiosities
@@ -47,6 +53,8 @@ class Rows : public jobs::Rows {
   [[nodiscard]] std::string id(std::size_t receiver) const;
   [[nodiscard]] const FormFactor& factor(std::size_t receiver, std::size_t source, Results& results) const;
   [[nodiscard]] bool has_totals() const { return light_ || gather_; }
+  [[nodiscard]] const FormFactor& find_measure(std::size_t receiver, std::size_t source, const Measure& measure,
+                                               Results& results) const;
   void find_totals(const Receiver& receiver, const ExactOptions& options, Results& results) const;
   void find_all(std::size_t receiver, const ExactOptions& options, Results& results) const;
   [[nodiscard]] const FormFactor& without_occluders(const Receiver& receiver, std::size_t source,

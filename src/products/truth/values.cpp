@@ -136,6 +136,8 @@ void write_npz(const fs::path& truth_file, const fs::path& file, const jobs::Row
   };
   std::vector<double> points, normals, total, factor, fraction, free, gradient;
   std::vector<std::int32_t> on;
+  static constexpr std::array kMeasures = {"solid_angle", "overcast", "sphere"};  // by measure_column()
+  std::array<std::vector<double>, 3> measured;
   FaceNumbers faces;
   UnitNormal unit_normal;
   rows.for_each("reading rows", [&](std::size_t, std::size_t source, const Row& row) {
@@ -148,6 +150,9 @@ void write_npz(const fs::path& truth_file, const fs::path& file, const jobs::Row
     factor.push_back(row.certified(row.exact));
     if (fractions) fraction.push_back(row.certified(row.visible_fraction));
     if (unoccluded) free.push_back(row.certified(row.unoccluded));
+    for (std::size_t m = 0; m < measured.size(); ++m) {
+      if (rows.has(kMeasures[m])) measured[m].push_back(row.certified(row.measures[m]));
+    }
     if (gradients) append(gradient, three(row.gradient));
   });
   files::NpzFile archive(file);
@@ -167,6 +172,7 @@ void write_npz(const fs::path& truth_file, const fs::path& file, const jobs::Row
     archive.add("gradient", std::array{rows.receivers(), sources, std::size_t{3}}, std::span<const double>(gradient));
   }
   add("unoccluded", free, sources);
+  for (std::size_t m = 0; m < measured.size(); ++m) add(kMeasures[m], measured[m], sources);
   add("total", total, 3);
   archive.add_texts("about", rows.about());
   archive.commit();

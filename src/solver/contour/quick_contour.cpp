@@ -14,126 +14,13 @@
 #include <cmath>
 #include <limits>
 
+#include "contour/quick_lanes.h"
 #include "kernel/ball.h"
 #include "kernel/vec.h"
 
 namespace exactff::contour {
 
 using namespace kernel::double_double;
-
-namespace {
-
-// --- Lanes ---
-
-// What sums over arcs share: four edges or pieces at a time, one per lane, and where the plane through x and another
-// edge crosses an edge.
-
-using contour::where;
-
-constexpr std::size_t kLanes = 4;
-
-template <class T>
-using FourOf = std::array<const T*, kLanes>;  // pointers into memory, one per lane
-
-// Pointers to up to four items; the last item is repeated if there are fewer.
-template <class T>
-EXACTFF_INLINE FourOf<T> four_of(std::span<const T> some) {
-  const std::size_t last = some.size() - 1;
-  return {&some[0], &some[std::min<std::size_t>(1, last)], &some[std::min<std::size_t>(2, last)],
-          &some[std::min<std::size_t>(3, last)]};
-}
-
-template <class Line>
-EXACTFF_INLINE FourBounded gather(const FourOf<Line>& lines, Bounded Line::*part) {
-  const Bounded &x = lines[0]->*part, &y = lines[1]->*part, &z = lines[2]->*part, &t = lines[3]->*part;
-  return {Four{x.hi, y.hi, z.hi, t.hi}, Four{x.lo, y.lo, z.lo, t.lo}, Four{x.error, y.error, z.error, t.error}};
-}
-
-template <class Line>
-EXACTFF_INLINE FourVector gather(const FourOf<Line>& lines, Vector Line::*part) {
-  const Vector &p = lines[0]->*part, &q = lines[1]->*part, &r = lines[2]->*part, &s = lines[3]->*part;
-  const auto component = [&](int i) -> BasicDoubleDouble<Four> {
-    return {Four{p.c[i].hi, q.c[i].hi, r.c[i].hi, s.c[i].hi}, Four{p.c[i].lo, q.c[i].lo, r.c[i].lo, s.c[i].lo}};
-  };
-  return {{component(0), component(1), component(2)},
-          Four{p.norm, q.norm, r.norm, s.norm},
-          Four{p.error, q.error, r.error, s.error}};
-}
-
-EXACTFF_INLINE FourVector gather(const FourOf<QuickCorner>& corners) {
-  const QuickCorner &p = *corners[0], &q = *corners[1], &r = *corners[2], &s = *corners[3];
-  const auto component = [&](int i) -> BasicDoubleDouble<Four> {
-    return {Four{p.hi[i], q.hi[i], r.hi[i], s.hi[i]}, Four{p.lo[i], q.lo[i], r.lo[i], s.lo[i]}};
-  };
-  return vector({component(0), component(1), component(2)}, Four{p.error, q.error, r.error, s.error});
-}
-
-EXACTFF_INLINE Bounded lane(const FourBounded& x, std::size_t k) { return {x.hi[k], x.lo[k], x.error[k]}; }
-
-EXACTFF_INLINE Vector lane(const FourVector& v, std::size_t k) {
-  const auto component = [&](int i) -> DoubleDouble { return {v.c[i].hi[k], v.c[i].lo[k]}; };
-  return {{component(0), component(1), component(2)}, v.norm[k], v.error[k]};
-}
-
-// The receiver's normal with an error, because scaling it may have lost a component to underflow.
-template <class Real>
-EXACTFF_INLINE BasicVector<Real> vector_of(const std::array<double, 3>& normal) {
-  const auto component = [&](int i) -> BasicDoubleDouble<Real> { return {uniform<Real>(normal[i]), Real{}}; };
-  return vector({component(0), component(1), component(2)}, uniform<Real>(kUnderflow));
-}
-
-EXACTFF_INLINE FourMask has_moderate_size(const FourVector& v) {
-  const Four largest = larger(larger(magnitude(v.c[0].hi), magnitude(v.c[1].hi)), magnitude(v.c[2].hi));
-  return both(both(largest >= 0x1p-200, largest <= 0x1p200), v.norm <= 0x1p202);  // the last condition is false for NaN
-}
-
-// Four points s a + m d, each of one edge, and their (s : m).
-struct FourPoints {
-  FourBounded s;
-  FourBounded m;
-  FourVector direction;
-};
-
-EXACTFF_INLINE FourPoints where(const FourMask& condition, const FourPoints& p, const FourPoints& q) {
-  return {where(condition, p.s, q.s), where(condition, p.m, q.m), where(condition, p.direction, q.direction)};
-}
-
-// normal . p, where `normal` is that of a plane through c. normal . (p - t c) loses less accuracy if p and t c are near
-// each other.
-EXACTFF_INLINE FourBounded height(const FourVector& normal, const FourVector& c, const FourVector& p) {
-  const Four t = p.norm / c.norm;
-  const Four distance = magnitude(p.c[0].hi - t * c.c[0].hi) + magnitude(p.c[1].hi - t * c.c[1].hi) +
-                        magnitude(p.c[2].hi - t * c.c[2].hi);
-  const FourMask near = distance < 0.25 * p.norm;
-  return dot(normal, in_some_lane(near) ? where(near, near_cancellation(p, t, c), p) : p);
-}
-
-// x times a power of two. Requires that nothing overflows.
-EXACTFF_INLINE FourBounded scaled(const FourBounded& x, const Four& scale) {
-  return {x.hi * scale, x.lo * scale, x.error * scale + kUnderflow};
-}
-
-// The power of two that scales x into [1, 2), if x and its inverse are normal; otherwise an arbitrary number.
-EXACTFF_INLINE Four inverse_power_of_two(const Four& x) {
-  const FourMask biased = (FourMask(x) >> 52) & 0x7FF;
-  return Four((2046 - biased) << 52);
-}
-
-// The point where the plane with the given normal, through x and c, crosses the edge from a to a + d. Declined unless
-// the crossing is certain.
-EXACTFF_INLINE FourPoints cross_edges(const FourVector& normal, const FourVector& c, const FourVector& a,
-                                      const FourVector& d) {
-  const FourBounded height_a = height(normal, c, a), rise = dot(normal, d);
-  const FourBounded height_b = height_a + rise;
-  const FourMask crosses =
-      both(both(sign_is_certain(height_a), sign_is_certain(height_b)), differ(height_a.hi < 0.0, height_b.hi < 0.0));
-  const Four scale = inverse_power_of_two(magnitude(rise.hi));
-  const FourBounded s = only_where(crosses, scaled(absolute(rise), scale));
-  const FourBounded m = only_where(crosses, scaled(absolute(height_a), scale));
-  return {s, m, combination(s, a, m, d)};
-}
-
-}  // namespace
 
 // --- Constants ---
 
@@ -220,38 +107,6 @@ void lines_of(const std::array<double, 3>& normal, std::span<const QuickCorner> 
   }
 }
 
-// --- Crossings ---
-
-// The edges of four pieces.
-struct FourEdges {
-  FourOf<QuickLine> line;
-  FourVector a;
-  FourVector along;
-};
-
-// Step 2, for one end of four pieces.
-EXACTFF_INLINE FourPoints locate(const FourEdges& edges, const FourOf<QuickPiece>& pieces,
-                                 std::uint32_t QuickPiece::*which, std::span<const QuickLine> lines) {
-  FourOf<QuickLine> crossing = edges.line;  // the default: a line does not cross itself, so this declines
-  FourMask at_a{}, at_b{};
-  for (std::size_t k = 0; k < kLanes; ++k) {
-    const std::uint32_t end = pieces[k]->*which;
-    const std::uint32_t end_at_a = edges.line[k]->reversed ? QuickPiece::kAtB : QuickPiece::kAtA;
-    at_a[k] = end == end_at_a ? -1 : 0;
-    at_b[k] = end >= QuickPiece::kAtA && end != end_at_a ? -1 : 0;
-    if (end < QuickPiece::kAtA) crossing[k] = &lines[end];
-  }
-  const FourMask at_corner = either(at_a, at_b);
-  FourPoints corner;
-  if (in_some_lane(at_corner)) {
-    const FourBounded zero{}, one{uniform<Four>(1.0), {}, {}};
-    corner = {one, where(at_b, one, zero), where(at_b, gather(edges.line, &QuickLine::b), edges.a)};
-    if (in_every_lane(at_corner)) return corner;
-  }
-  return where(at_corner, corner,
-               cross_edges(gather(crossing, &QuickLine::cross), gather(crossing, &QuickLine::a), edges.a, edges.along));
-}
-
 // --- Terms ---
 
 // For up to four pieces: the terms angle(p, q) n . (a x b) / |a x b| of Eq. (4); zero in lanes without a piece.
@@ -296,13 +151,13 @@ void terms_of(std::span<const QuickPiece> pieces, std::span<const QuickLine> lin
   }
 }
 
+}  // namespace
+
 std::array<double, 3> scaled_normal(const Vec3& n) {
   int exponent = 0;
   std::frexp(kernel::max_norm(n), &exponent);
   return {std::ldexp(n.x, -exponent), std::ldexp(n.y, -exponent), std::ldexp(n.z, -exponent)};
 }
-
-}  // namespace
 
 QuickContour::QuickContour(const Vec3& normal) : normal_(scaled_normal(normal)) {}
 
@@ -328,6 +183,12 @@ QuickContour::Value QuickContour::value(const Bounded& sum) const {
   const double error = kInflation * f.error;
   if (!std::isfinite(f.hi) || !std::isfinite(f.lo) || !std::isfinite(error)) return {0.0, 0.0, kDeclined.error};
   return {f.hi, f.lo, error};
+}
+
+QuickContour::Value value_of(const Bounded& x) {
+  const double error = kInflation * x.error;
+  if (!std::isfinite(x.hi) || !std::isfinite(x.lo) || !std::isfinite(error)) return {0.0, 0.0, kDeclined.error};
+  return {x.hi, x.lo, error};
 }
 
 // --- Corners ---
@@ -609,16 +470,6 @@ void QuickGradient::find_shares(std::span<const QuickPiece> pieces, std::span<co
 void QuickGradient::decline() {
   for (int i = 0; i < 3; ++i) position_[i] = v_[i] = kDeclined;
 }
-
-namespace {
-
-QuickGradient::Value value_of(const Bounded& x) {
-  const double error = kInflation * x.error;
-  if (!std::isfinite(x.hi) || !std::isfinite(x.lo) || !std::isfinite(error)) return {0.0, 0.0, kDeclined.error};
-  return {x.hi, x.lo, error};
-}
-
-}  // namespace
 
 QuickGradient::Value QuickGradient::over_turn_and_length(const Bounded& sum) const {
   const Vector n = vector_of<double>(normal_);

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "contour/contour.h"
+#include "contour/measures.h"
 #include "exact/quick_tier.h"
 #include "exact/source_planes.h"
 #include "exact/workspace.h"
@@ -26,6 +27,7 @@
 #include "kernel/float_environment.h"
 #include "kernel/numbers.h"
 #include "kernel/vec.h"
+#include "receivers/own_pieces.h"
 #include "scene/scene.h"
 #include "visibility/boolean_walk.h"
 #include "visibility/visible_boundary.h"
@@ -143,14 +145,15 @@ Workspace::Memory& Workspace::memory() { return owned_by(memory_, "Workspace"); 
 
 namespace {
 
-void check_receiver(const Receiver& receiver) {
-  for (const Vec3& v : {receiver.point, receiver.normal}) {
+void check_receiver(const Receiver& receiver, const Measure& measure) {
+  const Vec3 normal = measure.sphere ? Vec3{0.0, 0.0, 1.0} : receiver.normal;  // a sphere's does not matter
+  for (const Vec3& v : {receiver.point, normal}) {
     if (kernel::is_finite(v)) continue;
     throw InputError({.what = "the receiver's point or normal is not finite",
                       .why = "a form factor needs a point and a direction",
                       .suggestion = "give three finite numbers for each"});
   }
-  if (receiver.normal == Vec3{}) {
+  if (normal == Vec3{}) {
     throw InputError({.what = "the receiver's normal is (0, 0, 0)",
                       .why = "it has no direction, so the horizon is not defined",
                       .suggestion = "give a normal of any length other than zero"});
@@ -175,15 +178,40 @@ void check_direction(const Vec3& along) {
 
 namespace exact {
 
-void check_arguments(const Scene& scene, const Receiver& receiver, const ExactSource& source) {
+void check_measure(const Measure& measure) {
+  if (measure.kind != MeasureKind::kOvercast) return;
+  if (!kernel::is_finite(measure.up) || measure.up == Vec3{}) {
+    throw InputError({.what = "the direction upwards is zero or not finite",
+                      .why = "an overcast sky is brightest there",
+                      .suggestion = "give three finite numbers that are not all 0"});
+  }
+  if (!measure.sphere) return;
+  throw InputError({.what = "the overcast sky of a sphere is requested",
+                    .why = "illuminance needs a surface with a normal",
+                    .suggestion = "give a normal, or ask for the solid angle"});
+}
+
+Vec3 normal_of_sphere(const Scene& scene, const Receiver& receiver) {
+  const auto has_area = [&](FaceId face) { return scene.face(face).piece_count > 0; };
+  const auto own = std::ranges::find_if(receiver.on, has_area);
+  if (own == receiver.on.end()) return {0.0, 0.0, 1.0};
+  return front_of_piece(scene, own_piece(scene, *own, receiver.point));
+}
+
+Receiver looking_along(const Receiver& receiver, const Vec3& n) {
+  return {.point = receiver.point, .normal = n, .on = receiver.on, .id = {}};
+}
+
+void check_arguments(const Scene& scene, const Receiver& receiver, const ExactSource& source, const Measure& measure) {
   require_of_scene(scene, ExactSourceInside::planes(source).scene, "source");
-  check_receiver(receiver);
+  check_receiver(receiver, measure);
   for (const FaceId face : receiver.on) require_face(scene, face);
 }
 
-void check_view_arguments(const Scene& scene, const Receiver& receiver, int precision_cap) {
+void check_view_arguments(const Scene& scene, const Receiver& receiver, const Measure& measure, int precision_cap) {
   check_precision_cap(precision_cap);
-  check_receiver(receiver);
+  check_measure(measure);
+  check_receiver(receiver, measure);
   for (const FaceId face : receiver.on) require_face(scene, face);
 }
 
@@ -193,6 +221,13 @@ namespace {
 
 void check_options(const Scene& scene, const ExactOptions& options) {
   check_precision_cap(options.precision_cap);
+  exact::check_measure(options.measure);
+  if (!options.measure.is_form_factor() &&
+      (options.gradient || options.vertices || options.list_arcs || options.along)) {
+    throw InputError({.what = "a gradient of another measure than the form factor is requested",
+                      .why = "only that of the form factor is known",
+                      .suggestion = "leave out the gradient, or the measure"});
+  }
   if (options.along) check_direction(*options.along);
   const std::vector<FaceId>* only = options.only_occluders;
   if (only == nullptr || only->empty()) return;
@@ -262,8 +297,10 @@ class Solver {
   Solver(const Scene& scene, const Receiver& receiver, const ExactSource& source, const ExactOptions& options,
          FormFactor& result, WorkspaceInside::Memory& memory)
       : scene_(scene),
+        receiver_(receiver),
         planes_(ExactSourceInside::planes(source).planes),
         options_(options),
+        is_form_factor_(options.measure.is_form_factor()),
         wants_fraction_(options.visible_fraction || options.exact_fraction),
         wants_gradient_(options.gradient || options.vertices || options.list_arcs || options.along.has_value()),
         view_(scene, receiver),
@@ -281,17 +318,17 @@ class Solver {
     memory_.quick.start(view_.n);
     if (wants_gradient_) start_gradient();
     for (std::size_t p = 0; p < planes_.size(); ++p) {
-      PlaneVisibility seen = find(planes_[p]);
+      PlaneVisibility seen = is_form_factor_ ? find(planes_[p]) : measured(planes_[p]);
       if (wants_gradient_ && !view_.is_buried) {
         memory_.gradient->add({view_, planes_[p], request_}, seen.boundary);
-      } else {
+      } else if (is_form_factor_) {
         memory_.quick.add(seen.boundary);
       }
       note(planes_[p], std::move(seen), result_.planes[p]);
     }
     sort_unique(result_.cutters);
     if (something_visible_ && !sum_is_certain()) integrate_in_balls();
-    exact::set_bounds(result_);
+    exact::set_bounds(result_, is_form_factor_ ? 1.0 : contour::most_of(options_.measure));
     if (wants_gradient_) find_gradient();
     if (options_.vertices && !view_.is_buried) find_vertices();
     if (wants_fraction_) set_fraction(shares_, result_);
@@ -301,6 +338,49 @@ class Solver {
   // Steps 1 to 6 for one plane.
   [[nodiscard]] PlaneVisibility find(const SourcePlane& plane) {
     return find_visible_boundary(view_, plane, request_, memory_.edges);
+  }
+
+  // The same for another measure, whose terms are added. Those of a sphere are found in two halves of its view.
+  [[nodiscard, gnu::noinline]] PlaneVisibility measured(const SourcePlane& plane) {
+    PlaneVisibility seen = measured(plane, half_view(plane, 0));
+    if (options_.measure.sphere) join(seen, measured(plane, half_view(plane, 1)));
+    return seen;
+  }
+
+  [[nodiscard]] PlaneVisibility measured(const SourcePlane& plane, const visibility::View& view) {
+    PlaneVisibility seen = find_visible_boundary(view, plane, request_, memory_.edges);
+    memory_.quick.add(seen.boundary, options_.measure, view.n);
+    return seen;
+  }
+
+  // The receiver's view, or one of both halves of what a sphere sees. Where these meet does not matter: nearly all
+  // planes are in the first.
+  [[nodiscard]] visibility::View half_view(const SourcePlane& plane, int half) const {
+    if (!options_.measure.sphere) return view_;
+    const Vec3 n =
+        receiver_.on.empty() ? exact::rounded(plane.normal.exact) : exact::normal_of_sphere(scene_, receiver_);
+    const double turn = half == 0 ? -1.0 : 1.0;
+    return {scene_, exact::looking_along(receiver_, {turn * n.x, turn * n.y, turn * n.z})};
+  }
+
+  // Adds what is seen in the other half. The boundary then only tells whether anything is seen.
+  static void join(PlaneVisibility& all, PlaneVisibility&& other) {
+    PlaneRecord &record = all.record, &more = other.record;
+    if (record.outcome <= Outcome::kBelowHorizon) {
+      record = std::move(more);
+    } else if (more.outcome > Outcome::kBelowHorizon) {
+      if (record.outcome != more.outcome) record.outcome = Outcome::kPartlyHidden;
+      for (const auto count : {&PlaneRecord::tree_candidates, &PlaneRecord::candidates, &PlaneRecord::tree_edges,
+                               &PlaneRecord::silhouettes, &PlaneRecord::clipped, &PlaneRecord::pairs,
+                               &PlaneRecord::undecided_pairs, &PlaneRecord::loops, &PlaneRecord::edges}) {
+        record.*count += more.*count;
+      }
+    }
+    if (all.fraction) *all.fraction += *other.fraction;
+    for (const FaceId face : other.cutters) all.cutters.push_back(face);
+    std::ranges::sort(all.cutters);
+    all.cutters.erase(std::unique(all.cutters.begin(), all.cutters.end()), all.cutters.end());
+    if (!other.boundary.empty()) all.boundary = std::move(other.boundary);
   }
 
   void note(const SourcePlane& plane, PlaneVisibility&& seen, PlaneRecord& record) {
@@ -362,12 +442,17 @@ class Solver {
   [[nodiscard]] bool sum_is_certain() {
     constexpr int kBits = exact::QuickTier::kBits;
     if (options_.precision_cap < kBits) return false;
+    if (!is_form_factor_) {
+      const std::optional<bool> counts = memory_.quick.something_counts();
+      if (counts != true) return counts.has_value();
+    }
     const Ball ball = wants_gradient_ ? memory_.gradient->form_factor() : memory_.quick.ball();
     return exact::is_determined(ball, kBits, options_.digits, result_);
   }
 
   // Step 7 in balls of rising precision.
   void integrate_in_balls() {
+    if (!is_form_factor_) return measure_in_balls();
     const contour::ContourIntegral contour = exact_contour();
     exact::certify([&](long bits) { return contour.evaluate(bits); }, options_.digits, options_.precision_cap, result_);
   }
@@ -385,10 +470,26 @@ class Solver {
     return contour;
   }
 
+  [[gnu::noinline]] void measure_in_balls() {
+    contour::MeasureIntegral integral(options_.measure);
+    for (const SourcePlane& plane : planes_) {
+      for (int half = 0; half < (options_.measure.sphere ? 2 : 1); ++half) {
+        const visibility::View view = half_view(plane, half);
+        integral.start(view.n);
+        find_visible_boundary(view, plane, request_, memory_.edges)
+            .boundary.for_each_piece([&](const visibility::BoundaryPiece& piece) { integral.add(piece); });
+      }
+    }
+    if (integral.empty()) return;
+    exact::certify([&](long bits) { return integral.evaluate(bits); }, options_.digits, options_.precision_cap, result_,
+                   contour::most_of(options_.measure));
+  }
+
   const Scene& scene_;
+  const Receiver& receiver_;
   const std::vector<SourcePlane>& planes_;
   const ExactOptions& options_;
-  const bool wants_fraction_, wants_gradient_;
+  const bool is_form_factor_, wants_fraction_, wants_gradient_;
   const visibility::View view_;
   const visibility::BoundaryRequest request_;
   FormFactor& result_;
@@ -470,7 +571,7 @@ void exact_form_factor(const Scene& scene, const Receiver& receiver, const Exact
                        const ExactOptions& options, FormFactor& result, Workspace& workspace) {
   const kernel::StandardArithmetic arithmetic;
   check_options(scene, options);
-  exact::check_arguments(scene, receiver, source);
+  exact::check_arguments(scene, receiver, source, options.measure);
   const bool both = options.engine == Engine::kBoth;
   WorkspaceInside::Memory& memory = WorkspaceInside::memory(workspace);
   solve_by(both ? Engine::kEdges : options.engine, scene, receiver, source, options, result, memory);

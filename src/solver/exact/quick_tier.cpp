@@ -28,7 +28,9 @@ QuickCorner quick_corner(Outlines& outlines, CornerId id) {
 
 void QuickTier::start(const Vec3& normal) {
   contour_ = QuickContour(normal);
-  declined_ = false;
+  declined_ = some_count_ = some_are_unsure_ = false;
+  uses_measure_ = false;
+  sum_ = {};
 }
 
 void QuickTier::add(const visibility::VisibleBoundary& boundary) {
@@ -39,6 +41,23 @@ void QuickTier::add(const visibility::VisibleBoundary& boundary) {
     EdgeCovers& found = *boundary.edges();
     for_each_batch(found, found.parts(), [&] { contour_.add(pieces_, lines_); });
   }
+}
+
+void QuickTier::add(const visibility::VisibleBoundary& boundary, const Measure& measure, const Vec3& normal) {
+  if (boundary.empty()) return;
+  if (boundary.edges() == nullptr) {
+    declined_ = some_are_unsure_ = true;
+    return;
+  }
+  find_terms(*boundary.edges(), boundary.edges()->parts(), measure, normal, terms_);
+  std::array<Bounded, 4> sums{};  // four, so that an addition need not wait for the one before
+  for (std::size_t i = 0; i < terms_.size(); ++i) {
+    const Bounded& term = terms_[i];
+    sums[i % 4] = sums[i % 4] + term;
+    some_count_ = some_count_ || (term.error > 0.0 && std::isfinite(term.error));
+    some_are_unsure_ = some_are_unsure_ || !std::isfinite(term.error);
+  }
+  sum_ = sum_ + ((sums[0] + sums[1]) + (sums[2] + sums[3]));
 }
 
 // Neighbouring parts share lines, so recent lines are worth keeping; all lines together would not fit into the cache.
@@ -78,6 +97,19 @@ void QuickTier::find_terms(EdgeCovers& found, std::span<const EdgeCovers::Part> 
   });
 }
 
+void QuickTier::find_terms(EdgeCovers& found, std::span<const EdgeCovers::Part> parts, const Measure& measure,
+                           const Vec3& normal, std::vector<Bounded>& terms) {
+  contour_ = QuickContour(normal);
+  if (!measure_.is_of(measure, normal)) measure_ = contour::QuickMeasure(measure, normal);
+  uses_measure_ = true;
+  terms.resize(parts.size());
+  std::size_t done = 0;
+  for_each_batch(found, parts, [&] {
+    measure_.find_terms(pieces_, lines_, std::span(terms).subspan(done, pieces_.size()));
+    done += pieces_.size();
+  });
+}
+
 std::uint32_t QuickTier::number_of_line(Outlines& outlines, EdgeId id) {
   const auto [number, is_new] = line_index_.find(id);
   if (is_new) {
@@ -106,12 +138,12 @@ void QuickTier::forget_lines() {
 }
 
 Ball QuickTier::ball(const Bounded& sum) const {
-  const QuickContour::Value value = contour_.value(sum);
+  const QuickContour::Value value = uses_measure_ ? measure_.value(sum) : contour_.value(sum);
   return kernel::ball_around(value.hi, value.lo, value.error);
 }
 
 Ball QuickTier::ball() const {
-  const QuickContour::Value value = contour_.value();
+  const QuickContour::Value value = uses_measure_ ? measure_.value(sum_) : contour_.value();
   return kernel::ball_around(value.hi, value.lo, declined_ ? std::numeric_limits<double>::infinity() : value.error);
 }
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "contour/quick_contour.h"
+#include "contour/quick_measures.h"
 #include "exactff/exact.h"
 #include "kernel/ball.h"
 #include "visibility/plane_visibility.h"
@@ -64,13 +66,25 @@ class QuickTier {
   // Adds the boundary of one plane's visible region. Declines what the Booleans found.
   void add(const visibility::VisibleBoundary& boundary);
 
+  // The same for another measure; `normal` as for MeasureIntegral::start. Between start() and ball().
+  void add(const visibility::VisibleBoundary& boundary, const Measure& measure, const Vec3& normal);
+  // Whether some of the parts added for a measure count. Not known if something was declined and nothing certainly
+  // counts.
+  [[nodiscard]] std::optional<bool> something_counts() const {
+    return some_count_ ? std::optional(true) : some_are_unsure_ ? std::nullopt : std::optional(false);
+  }
+
   // The term of each of these parts in Eq. (4), to be added by the caller.
   void find_terms(visibility::EdgeCovers& found, std::span<const visibility::EdgeCovers::Part> parts,
                   std::vector<kernel::double_double::Bounded>& terms);
-  // Encloses F for a sum of terms.
+  // The same for another measure.
+  void find_terms(visibility::EdgeCovers& found, std::span<const visibility::EdgeCovers::Part> parts,
+                  const Measure& measure, const Vec3& normal, std::vector<kernel::double_double::Bounded>& terms);
+  // Encloses F, or the measure of the last call of find_terms, for a sum of terms.
   [[nodiscard]] Ball ball(const kernel::double_double::Bounded& sum) const;
 
-  // Encloses F; its radius is at least the proved error. The ball contains every number if anything was declined.
+  // Encloses F, or the measure; its radius is at least the proved error. The ball contains every number if anything was
+  // declined.
   [[nodiscard]] Ball ball() const;
 
  private:
@@ -84,6 +98,12 @@ class QuickTier {
 
   contour::QuickContour contour_;
   bool declined_ = false;
+  // Of another measure than F.
+  contour::QuickMeasure measure_;
+  bool uses_measure_ = false;
+  std::vector<kernel::double_double::Bounded> terms_;
+  kernel::double_double::Bounded sum_;
+  bool some_count_ = false, some_are_unsure_ = false;
   // Of the current plane.
   DenseIndex corner_index_, line_index_;
   std::vector<contour::QuickCorner> corners_;
@@ -96,7 +116,7 @@ class QuickTier {
 // --- Certified ---
 
 // From balls to a certified value: its double, its bounds and its status. A Result has the members value, lower, upper,
-// status, enclosure and precision_bits of a FormFactor.
+// status, enclosure and precision_bits of a FormFactor; `most` is the largest double that a bound needs.
 
 inline bool has_decimals(const Enclosure& enclosure, int digits) {
   return digits <= 0 || enclosure.decimals(digits).has_value();
@@ -118,14 +138,14 @@ bool is_determined(const Ball& ball, int bits, int digits, Result& result) {
 // Raises the precision until the ball determines the double and the requested decimals, or the cap is reached. The
 // status refers to the double: decimals may stay undecided if F is a decimal tie, such as 1/8 to two digits.
 template <class Evaluate, class Result>
-void certify(const Evaluate& evaluate, int digits, int cap, Result& result) {
+void certify(const Evaluate& evaluate, int digits, int cap, Result& result, double most = 1.0) {
   constexpr int kFirstBits = 96;  // enough for all but the near-degenerate
   for (int bits = std::min(kFirstBits, cap);; bits = std::min(2 * bits, cap)) {
     const Ball ball = evaluate(bits);
     if (is_determined(ball, bits, digits, result)) return;
     if (bits < cap) continue;
     const std::optional<double> nearest = result.enclosure.nearest();
-    result.value = nearest ? *nearest : std::clamp(kernel::nearest_to_midpoint(ball), 0.0, 1.0);
+    result.value = nearest ? *nearest : std::clamp(kernel::nearest_to_midpoint(ball), 0.0, most);
     result.status = !nearest ? Status::kNotCertified : result.value == 0.0 ? Status::kUnderflow : Status::kCertified;
     return;
   }
@@ -133,13 +153,13 @@ void certify(const Evaluate& evaluate, int digits, int cap, Result& result) {
 
 // With very few bits a ball may contain every number; its midpoint and ends are then NaN.
 template <class Result>
-void set_bounds(Result& result) {
+void set_bounds(Result& result, double most = 1.0) {
   if (result.status == Status::kZero) return;  // [0, 0]
   const bool certified = result.status != Status::kNotCertified;
   const double below = certified ? std::nextafter(result.value, -1.0) : result.enclosure.lower();
-  const double above = certified ? std::nextafter(result.value, 2.0) : result.enclosure.upper();
-  result.lower = std::isnan(below) ? 0.0 : std::clamp(below, 0.0, 1.0);
-  result.upper = std::isnan(above) ? 1.0 : std::clamp(above, 0.0, 1.0);
+  const double above = certified ? std::nextafter(result.value, 20.0) : result.enclosure.upper();
+  result.lower = std::isnan(below) ? 0.0 : std::clamp(below, 0.0, most);
+  result.upper = std::isnan(above) ? most : std::clamp(above, 0.0, most);
   if (std::isnan(result.value)) result.value = 0.5 * (result.lower + result.upper);
 }
 

@@ -12,6 +12,18 @@ std::string_view to_string(Status status) {
   return kNames[static_cast<std::size_t>(status)];
 }
 
+std::string_view to_string(MeasureKind kind) {
+  constexpr std::string_view kNames[] = {"form-factor", "solid-angle", "overcast"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::optional<MeasureKind> measure_named(std::string_view name) {
+  for (const MeasureKind kind : {MeasureKind::kFormFactor, MeasureKind::kSolidAngle, MeasureKind::kOvercast}) {
+    if (name == to_string(kind)) return kind;
+  }
+  return std::nullopt;
+}
+
 std::string_view to_string(VisiblePart part) {
   constexpr std::string_view kNames[] = {"nothing", "some", "all"};
   return kNames[static_cast<std::size_t>(part)];

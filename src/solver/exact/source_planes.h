@@ -25,9 +25,15 @@ namespace exact {
 
 // Throws InputError unless the point is finite and the normal is finite and not zero. Throws std::invalid_argument if
 // the receiver's face or the source does not belong to the scene.
-void check_arguments(const Scene& scene, const Receiver& receiver, const ExactSource& source);
-// The same for the receiver alone, and InputError for a precision cap below one bit.
-void check_view_arguments(const Scene& scene, const Receiver& receiver, int precision_cap);
+void check_arguments(const Scene& scene, const Receiver& receiver, const ExactSource& source,
+                     const Measure& measure = {});
+// The same for the receiver alone, and InputError for a precision cap below one bit or an impossible measure.
+void check_view_arguments(const Scene& scene, const Receiver& receiver, const Measure& measure, int precision_cap);
+
+// A sphere is seen as two receivers with opposite normals. Of one on a face the normal is that of the face, since what
+// is buried there is on its front.
+[[nodiscard]] Vec3 normal_of_sphere(const Scene& scene, const Receiver& receiver);
+[[nodiscard]] Receiver looking_along(const Receiver& receiver, const Vec3& n);
 
 }  // namespace exact
 

@@ -86,7 +86,8 @@ void SourceFactors::find_one(const Receiver& receiver, std::size_t source, const
 }
 
 void SourceFactors::look_around(const Receiver& receiver, const ExactOptions& options, Results& memory) const {
-  const ViewOptions all{.faces = faces_, .digits = options.digits, .precision_cap = options.precision_cap};
+  const ViewOptions all{
+      .faces = faces_, .measure = options.measure, .digits = options.digits, .precision_cap = options.precision_cap};
   view(scene_, receiver, all, memory.view, memory.workspace);
 }
 

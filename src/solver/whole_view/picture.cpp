@@ -537,7 +537,7 @@ class Picture {
 
 std::string view_svg(const Scene& scene, const Receiver& receiver, const ViewPictureOptions& options) {
   const kernel::StandardArithmetic arithmetic;
-  exact::check_view_arguments(scene, receiver, 1);
+  exact::check_view_arguments(scene, receiver, {}, 1);
   if (!kernel::is_finite(options.up) || kernel::max_norm(options.up) == 0.0) {
     throw InputError({.what = "the direction that points upwards in the picture is not finite or zero",
                       .why = "it says how to turn the picture",

@@ -14,9 +14,11 @@ void require_agreement(const Scene& scene, const Receiver& receiver, const ViewO
     const Selection patch{.patch = static_cast<PatchId>(p), .face = {}, .scene = scene.id()};
     const std::vector<FaceId> faces = scene.faces_of(patch);
     const bool clear = std::ranges::any_of(faces, [&](FaceId face) { return scene.face(face).transparent; });
-    const FormFactor f =
-        exact_form_factor(scene, receiver, {scene, patch},
-                          {.engine = Engine::kBoth, .digits = options.digits, .precision_cap = options.precision_cap});
+    const FormFactor f = exact_form_factor(scene, receiver, {scene, patch},
+                                           {.engine = Engine::kBoth,
+                                            .measure = options.measure,
+                                            .digits = options.digits,
+                                            .precision_cap = options.precision_cap});
     const bool is_seen = next != seen.patches.end() && next->patch == patch.patch;
     const ViewShare found = is_seen ? next->form_factor : ViewShare{};
     if (is_seen) ++next;

@@ -305,7 +305,7 @@ class MeshMaker {
 
 VisibilityMesh visibility_mesh(const Scene& scene, const Receiver& receiver) {
   const kernel::StandardArithmetic arithmetic;
-  exact::check_view_arguments(scene, receiver, 1);
+  exact::check_view_arguments(scene, receiver, {}, 1);
   return MeshMaker(scene, receiver).run();
 }
 

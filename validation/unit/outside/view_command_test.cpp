@@ -42,6 +42,56 @@ struct ViewCommand : testing::Test {
   }
 };
 
+double sum_of_plain(const std::string& output) {
+  std::istringstream lines(output);
+  double sum = 0.0;
+  for (std::string line; std::getline(lines, line);) sum += std::stod(line.substr(line.find('\t') + 1));
+  return sum;
+}
+
+TEST_F(ViewCommand, KnowsOtherMeasuresAndSpheres) {
+  constexpr double kPi = 3.141592653589793;
+  EXPECT_NEAR(sum_of_plain(up({"--plain", "--measure", "solid-angle"}).output), 2.0 * kPi, 1e-14);
+  EXPECT_NEAR(sum_of_plain(up({"--plain", "--measure", "overcast"}).output), 1.0, 1e-15);
+  const auto sphere = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"view", scene, "--at", "0", "0", "0", "--sphere"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(EXACTFF_PROGRAM, arguments);
+  };
+  EXPECT_NEAR(sum_of_plain(sphere({"--plain"}).output), 1.0, 1e-15);
+  EXPECT_NEAR(sum_of_plain(sphere({"--plain", "--measure", "solid-angle"}).output), 4.0 * kPi, 1e-14);
+  EXPECT_TRUE(sphere({"--plain"}).output.starts_with("light\t0.1")) << sphere({"--plain"}).output;
+  EXPECT_EQ(sphere({"--measure", "overcast"}).exit_code, 2);
+  EXPECT_EQ(sphere({"--normal", "0", "0", "1"}).exit_code, 2);
+  EXPECT_EQ(up({"--measure", "overcast", "--up", "0", "0", "0"}).exit_code, 2);
+  EXPECT_EQ(up({"--measure", "overcast", "--engine", "both"}).exit_code, 0);
+}
+
+TEST_F(ViewCommand, PointAndRenderKnowOtherMeasures) {
+  const auto point = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"point", scene, "--at", "0", "0", "0", "--source", "light", "--plain"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(EXACTFF_PROGRAM, arguments);
+  };
+  const std::string sphere = point({"--sphere"}).output;
+  EXPECT_EQ(point({"--normal", "0", "0", "1", "--measure", "solid-angle", "--engine", "both"}).exit_code, 0);
+  EXPECT_NEAR(4.0 * std::stod(sphere) * 3.141592653589793,
+              std::stod(point({"--sphere", "--measure", "solid-angle"}).output), 1e-14);
+  EXPECT_EQ(point({}).exit_code, 2);
+  EXPECT_EQ(point({"--sphere", "--gradient"}).exit_code, 2);
+  const std::string picture = (directory.path() / "a.exr").string();
+  const auto render = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"render",   scene,   "--size", "8x8",   "--eye",  "3",
+                                          "3",        "3",     "--look", "0",     "0",      "-1",
+                                          "--source", "light", "-o",     picture, "--force"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(EXACTFF_PROGRAM, arguments).exit_code;
+  };
+  EXPECT_EQ(render({"--measure", "overcast", "--up", "0", "0", "1"}), 0);
+  EXPECT_EQ(render({"--sphere"}), 0);
+  EXPECT_EQ(render({"--measure", "solid-angle", "--quantity", "radiance"}), 2);
+}
+
 // The twin is stacked: it is not seen.
 TEST_F(ViewCommand, PlainPrintsNameTabShareThenBackAndOpen) {
   const ProgramRun run = up({"--plain"});

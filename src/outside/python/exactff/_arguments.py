@@ -11,7 +11,7 @@ import sys
 import time
 import warnings
 from types import FrameType
-from typing import Any, Callable, Iterator, NamedTuple, NoReturn, Optional, Sequence, Union
+from typing import Any, Callable, Iterator, Literal, NamedTuple, NoReturn, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -128,8 +128,23 @@ def vectors(value: ArrayLike, name: str) -> Floats:
     return array
 
 
-def receivers(points: ArrayLike, normals: ArrayLike) -> tuple[tuple[int, ...], Floats, Floats]:
-    """The shape that both have together without the last axis, and both as (n, 3)."""
+Measure = Literal["form-factor", "solid-angle", "overcast"]
+
+
+def measure_tuple(measure: str, up: ArrayLike, sphere: bool) -> tuple[str, tuple[float, float, float], bool]:
+    """Checks what is integrated."""
+    if measure not in ("form-factor", "solid-angle", "overcast"):
+        refuse(f"measure is {measure!r}", "", "choose 'form-factor', 'solid-angle' or 'overcast'")
+    x, y, z = (float(c) for c in vectors(up, "up").reshape(-1, 3)[0])
+    return measure, (x, y, z), sphere
+
+
+def receivers(points: ArrayLike, normals: Optional[ArrayLike]) -> tuple[tuple[int, ...], Floats, Floats]:
+    """The shape that both have together without the last axis, and both as (n, 3). Without normals they are 0."""
+    if normals is None:
+        p = vectors(points, "points")
+        rows = _rows(p, p.shape[:-1], (3,))
+        return p.shape[:-1], rows, np.zeros_like(rows)
     p, n = vectors(points, "points"), vectors(normals, "normals")
     zero = np.asarray(~n.any(axis=-1))
     if zero.any():

@@ -31,7 +31,8 @@ class TruthSummary(NamedTuple):
 
 def truth(scene: Scene, receivers: Receivers, path: Union[str, os.PathLike[str]], sources: Names = None, *,
           unoccluded: bool = False, fraction: bool = False, unit_normals: bool = False, uv: bool = False,
-          gradient: bool = False,
+          gradient: bool = False, measures: Sequence[Literal["solid-angle", "overcast", "sphere"]] = (),
+          up: ArrayLike = (0.0, 0.0, 1.0),
           existing: Literal["refuse", "resume", "replace"] = "refuse", threads: int = 0,
           progress: Progress = None) -> TruthSummary:
     """Writes a truth file: the bytes that ``exactff truth`` writes for the same scene, receivers and sources.
@@ -41,6 +42,7 @@ def truth(scene: Scene, receivers: Receivers, path: Union[str, os.PathLike[str]]
     sources : as in :meth:`Scene.form_factors`; the rows of "sky" are the last of each receiver
     receivers : from :meth:`Scene.receivers`, :meth:`Scene.read_receivers` or :meth:`Scene.receivers_at`
     unoccluded, fraction, unit_normals, uv, gradient : additional columns
+    measures, up : further columns, as in :meth:`Scene.form_factors`; "sphere" is the form factor from a small sphere
     existing : what to do if there is a file or a journal of an interrupted run: "refuse", "resume" or "replace"
 
     After Ctrl-C or a crash, finished rows are kept in ``PATH.part``; ``existing="resume"`` continues.
@@ -49,12 +51,13 @@ def truth(scene: Scene, receivers: Receivers, path: Union[str, os.PathLike[str]]
         refuse(f"existing is {existing!r}", "", "choose 'refuse', 'resume' or 'replace'")
     wanted = {"unoccluded": unoccluded, "visible_fraction": fraction, "unit_normals": unit_normals, "uv": uv,
               "gradient": gradient}
+    more = [_arguments.measure_tuple("form-factor" if one == "sphere" else one, up, one == "sphere") for one in measures]
     count = _arguments.thread_count(threads)
     require_free(path, "replace", scene._read)
     with shown(progress, "row") as tell:
         rows, by_status, resumed, seconds = _exactff.write_truth(
             scene._scene, scene.name, receivers._list, receivers.name, scene._sources(sources, sky=True), os.fspath(path),
-            existing, [column for column, is_wanted in wanted.items() if is_wanted], count, tell)
+            existing, [column for column, is_wanted in wanted.items() if is_wanted], more, count, tell)
     certified, zero, underflow, not_certified = by_status
     if not_certified:
         warn(f"{not_certified} of {rows} rows are not certified")

@@ -10,6 +10,7 @@ _Floats = NDArray[np.float64]
 _Ints = NDArray[np.int64]
 _Path = Union[str, os.PathLike[str]]
 _Tell = Optional[Callable[[int, int], object]]
+_Measure = tuple[str, tuple[float, float, float], bool]
 
 version: str
 
@@ -138,12 +139,12 @@ def find_faces(scene: Scene, points: _Floats, normals: _Floats, tolerance: Optio
 def near_misses(scene: Scene, points: _Floats, normals: _Floats, on: _Ints) -> list[str]: ...
 def form_factors(
     scene: Scene, points: _Floats, normals: _Floats, on: _Ints, sources: Sequence[str], full: bool, fraction: bool,
-    gradient: bool, precision_cap: int, threads: int, progress: _Tell
+    gradient: bool, precision_cap: int, threads: int, progress: _Tell, measure: _Measure
 ) -> tuple[_Floats, NDArray[np.int8], Optional[_Floats], Optional[_Floats], Optional[NDArray[np.int32]],
            Optional[_Floats], Optional[_Floats], Optional[NDArray[np.int8]]]: ...
 def form_factor(scene: Scene, point: Sequence[float], normal: Sequence[float], on: Sequence[int], source: str,
                 fraction: bool, list_cutters: bool, gradient: bool, vertices: bool, digits: int, precision_cap: int,
-                only_occluders: Optional[Sequence[int]]) -> Pair: ...
+                only_occluders: Optional[Sequence[int]], measure: _Measure) -> Pair: ...
 _Factor = tuple[float, float, float, str, str, bool, float, float, int, int, str]
 _Apart = tuple[int, int, float, float]
 _Share = tuple[float, float, float, int]
@@ -164,7 +165,8 @@ def view_factor_matrix(
            tuple[int, Optional[_Apart], list[_Apart]], MadeMatrix]: ...
 def with_two_sided(scene: Scene, names: Sequence[str]) -> Scene: ...
 def view(scene: Scene, point: Sequence[float], normal: Sequence[float], on: Sequence[int], faces: bool, digits: int,
-         precision_cap: int) -> tuple[list[tuple[str, _Share, _Share, bool]], _Share, _Share, Optional[str]]: ...
+         precision_cap: int,
+         measure: _Measure) -> tuple[list[tuple[str, _Share, _Share, bool]], _Share, _Share, Optional[str]]: ...
 def radiosity(
     scene: Scene, accuracy: Optional[float], budget: int, width: Optional[float], backs: bool, threads: int,
     progress: _Tell
@@ -176,7 +178,8 @@ def method_text(text: str) -> str: ...
 def estimates(method: str, scene: Scene, points: _Floats, normals: _Floats, on: _Ints, sources: Sequence[str],
               threads: int, progress: _Tell) -> _Floats: ...
 def write_truth(scene: Scene, scene_name: str, receivers: ReceiverList, receivers_name: str, sources: Sequence[str],
-                file: _Path, existing: str, columns: Sequence[str], threads: int,
+                file: _Path, existing: str, columns: Sequence[str],
+                measures: Sequence[_Measure], threads: int,
                 progress: _Tell) -> tuple[int, list[int], int, float]: ...
 class Matching:
     truth_column: str

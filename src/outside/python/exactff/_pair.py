@@ -250,15 +250,16 @@ class _Again:
     """Computes the same pair with other options."""
 
     def __init__(self, scene: _exactff.Scene, point: tuple[float, ...], normal: tuple[float, ...], on: list[int],
-                 source: str) -> None:
+                 source: str, measure: tuple[str, tuple[float, float, float], bool]) -> None:
         self.scene = scene
         self._fixed = (point, normal, on, source)
+        self._measure = measure
 
     def __call__(self, fraction: bool = False, list_cutters: bool = False, digits: int = 0, precision_cap: int = 65536,
                  only_occluders: Optional[list[int]] = None, gradient: bool = False,
                  vertices: bool = False) -> _exactff.Pair:
         return _exactff.form_factor(self.scene, *self._fixed, fraction, list_cutters, gradient, vertices, digits,
-                                    precision_cap, only_occluders)
+                                    precision_cap, only_occluders, self._measure)
 
 
 def _explanation(f: FormFactor, pair: _exactff.Pair, ask: _Again) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arguments, _exactff, _geometry
-from ._arguments import check_existing, Floats, Ints, Names, Progress, refuse, require_free, shown, warn
+from ._arguments import check_existing, Floats, Ints, Measure, Names, Progress, refuse, require_free, shown, warn
 from ._geometry import Contact, Finding, Material, Patch, Receivers, Report
 from ._pair import _Again, FormFactor, FormFactors, Status
 
@@ -268,20 +268,23 @@ class Scene:
     # --- form factors ---
 
     @overload
-    def form_factors(self, points: ArrayLike, normals: ArrayLike, sources: Names = None, on: On = None, *,
+    def form_factors(self, points: ArrayLike, normals: Optional[ArrayLike], sources: Names = None, on: On = None, *,
                      threads: int = 0, transparent: Names = None, fraction: Literal[False] = False,
-                     gradient: Literal[False] = False, full: Literal[False] = False, progress: Progress = None, precision_cap: int = 65536) -> Floats: ...
+                     gradient: Literal[False] = False, full: Literal[False] = False, progress: Progress = None, precision_cap: int = 65536,
+                     measure: Measure = "form-factor", up: ArrayLike = (0.0, 0.0, 1.0)) -> Floats: ...
 
     @overload
-    def form_factors(self, points: ArrayLike, normals: ArrayLike, sources: Names = None, on: On = None, *,
+    def form_factors(self, points: ArrayLike, normals: Optional[ArrayLike], sources: Names = None, on: On = None, *,
                      threads: int = 0, transparent: Names = None, fraction: bool = False, gradient: bool = False,
-                     full: bool = False, progress: Progress = None,
-                     precision_cap: int = 65536) -> Union[Floats, FormFactors]: ...
+                     full: bool = False, progress: Progress = None, precision_cap: int = 65536,
+                     measure: Measure = "form-factor",
+                     up: ArrayLike = (0.0, 0.0, 1.0)) -> Union[Floats, FormFactors]: ...
 
-    def form_factors(self, points: ArrayLike, normals: ArrayLike, sources: Names = None, on: On = None, *,
+    def form_factors(self, points: ArrayLike, normals: Optional[ArrayLike], sources: Names = None, on: On = None, *,
                      threads: int = 0, transparent: Names = None, fraction: bool = False, gradient: bool = False,
-                     full: bool = False, progress: Progress = None,
-                     precision_cap: int = 65536) -> Union[Floats, FormFactors]:
+                     full: bool = False, progress: Progress = None, precision_cap: int = 65536,
+                     measure: Measure = "form-factor",
+                     up: ArrayLike = (0.0, 0.0, 1.0)) -> Union[Floats, FormFactors]:
         """Exact form factors from receivers to sources.
 
         F is the share of the diffuse light leaving a point that reaches the source directly: the integral over the
@@ -290,7 +293,8 @@ class Scene:
         Parameters
         ----------
         points : (n, 3), in the scene's unit of length; any leading shape and any strides
-        normals : (n, 3) of any length but 0, or (3,) for all; broadcast against `points`
+        normals : (n, 3) of any length but 0, or (3,) for all; broadcast against `points`. None: each receiver is a small
+            sphere, which sees all directions; its form factor is the solid angle over 4 pi
         sources : names ``NAME`` or ``NAME:k``, or patterns such as ``"lamp_*"`` for all that match; "all" for every patch;
             "sky" for what is open, all directions that meet nothing (unless a patch has this name), without `fraction` and
             `gradient`; default: every patch that emits
@@ -305,6 +309,10 @@ class Scene:
         full : return :class:`FormFactors` with bounds, status and precision
         progress : None for a bar of tqdm on a terminal; True, False, or a function of (done, total)
         precision_cap : the largest precision, in bits
+        measure : instead of F, "solid-angle": of what is visible above the horizon, in sr; or "overcast": what the
+            receiver gets of the CIE overcast sky behind the visible part, over what open ground gets of all of it (the
+            sky component of a daylight factor), in [0, 1]. Not with `gradient`
+        up : where the zenith of the overcast sky is; below its horizon there is no sky
 
         Returns
         -------
@@ -325,7 +333,7 @@ class Scene:
         with shown(progress, "receiver") as tell:
             value, status, lower, upper, bits, share, slope, slope_status = _exactff.form_factors(
                 scene._scene, p, n, own, names, full or fraction or gradient, fraction, gradient, _bits(precision_cap),
-                count, tell)
+                count, tell, _arguments.measure_tuple(measure, up, normals is None))
         missing = int(np.count_nonzero(status == Status.NOT_CERTIFIED))
         if missing:
             warn(f"{missing} of {status.size} values are not certified (the precision cap was reached); "
@@ -338,9 +346,10 @@ class Scene:
                            None if slope is None else slope.reshape(size + (3,)),
                            None if slope_status is None else slope_status.reshape(size + (3,)))
 
-    def form_factor(self, point: ArrayLike, normal: ArrayLike, source: Optional[str] = None, on: On = None, *,
+    def form_factor(self, point: ArrayLike, normal: Optional[ArrayLike], source: Optional[str] = None, on: On = None, *,
                     transparent: Names = None, fraction: bool = False, digits: int = 0,
-                    precision_cap: int = 65536, gradient: bool = False, vertices: bool = False) -> FormFactor:
+                    precision_cap: int = 65536, gradient: bool = False, vertices: bool = False,
+                    measure: Measure = "form-factor", up: ArrayLike = (0.0, 0.0, 1.0)) -> FormFactor:
         """The exact form factor of one pair, with its proof, an explanation and a drawing.
 
         Parameters are those of :meth:`form_factors`. `source` may be left out if one patch emits. `digits` raises the
@@ -354,7 +363,7 @@ class Scene:
         own = scene._own_faces(on, shape, p, n, 1)
         scene._warn_of_misses(p, n, own)
         ask = _Again(scene._scene, tuple(p[0].tolist()), tuple(n[0].tolist()), [int(f) for f in own[0] if f >= 0],
-                     self._source(source))
+                     self._source(source), _arguments.measure_tuple(measure, up, normal is None))
         return FormFactor(ask(fraction=fraction, digits=digits, precision_cap=_bits(precision_cap),
                               gradient=gradient, vertices=vertices), ask)
 
@@ -400,6 +409,9 @@ class Scene:
         if isinstance(on, str):
             tolerance = self._automatic(on)
             if tolerance is not False:
+                if len(n) and not n.any():
+                    refuse(f"on is {on!r} without normals", "it finds a face whose normal is the receiver's",
+                           "name the face")
                 return self._found(tolerance, p, n, threads)
             faces = np.array(self._scene.own_faces(on), np.int64)
             return np.broadcast_to(faces, (len(p), len(faces)))
@@ -451,7 +463,9 @@ class Scene:
         return _arguments.face_rows(table, shape, self._scene.face_count())
 
     def _warn_of_misses(self, p: Floats, n: Floats, own: Ints) -> None:
-        """Warns of points slightly behind or in front of a face: these are probably slips."""
+        """Warns of points slightly behind or in front of a face: these are probably slips. Not of spheres."""
+        if not n.any():
+            return
         step = -(-len(p) // _MOST_LOOKED_AT) if len(p) else 1
         for sentence in _exactff.near_misses(self._scene, p[::step], n[::step], own[::step]):
             warn(sentence)

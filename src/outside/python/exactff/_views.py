@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _arguments, _exactff
-from ._arguments import check_existing, Floats, Names, Path, Progress, refuse, require_free, shown, warn
+from ._arguments import check_existing, Floats, Measure, Names, Path, Progress, refuse, require_free, shown, warn
 from ._pair import Status
 from ._scene import On, Scene
 
@@ -352,17 +352,19 @@ def _reciprocity(found: Any, rows: list[str], columns: list[str]) -> Reciprocity
     return Reciprocity(pairs, None if worst is None else named(worst), tuple(named(pair) for pair in apart))
 
 
-def view(scene: Scene, at: ArrayLike, normal: ArrayLike, on: On = None, *, patches: str = "groups", digits: int = 0,
-         precision_cap: int = 65536) -> View:
+def view(scene: Scene, at: ArrayLike, normal: Optional[ArrayLike], on: On = None, *, patches: str = "groups",
+         digits: int = 0, precision_cap: int = 65536, measure: Measure = "form-factor",
+         up: ArrayLike = (0.0, 0.0, 1.0)) -> View:
     """All that a receiver sees, patch by patch, with the backs of faces and what is open.
 
     Parameters
     ----------
     at : (3,), a point in the scene's unit of length
-    normal : (3,), of any length but 0
+    normal : (3,), of any length but 0; None: a small sphere, which sees all directions
     on : own faces, as in :meth:`Scene.form_factors`
     patches : "groups", or "faces" for a value for each face
     digits : raise the precision until so many significant digits are proved
+    measure, up : as in :meth:`Scene.form_factors`; solid angles add up to 2 pi, or 4 pi around a sphere
 
     Every form factor is exact: the bits that :meth:`Scene.form_factor` gives. Raises InputError; the GIL is released.
     """
@@ -376,7 +378,8 @@ def view(scene: Scene, at: ArrayLike, normal: ArrayLike, on: On = None, *, patch
     if not 1 <= precision_cap <= _MOST_BITS:
         refuse(f"precision_cap is {precision_cap}", f"it is a number of bits from 1 to {_MOST_BITS}", "leave it out")
     rows, back, free, buried = _exactff.view(scene._scene, tuple(p[0].tolist()), tuple(n[0].tolist()),
-                                     [int(f) for f in own[0] if f >= 0], patches == "faces", digits, precision_cap)
+                                     [int(f) for f in own[0] if f >= 0], patches == "faces", digits, precision_cap,
+                                     _arguments.measure_tuple(measure, up, normal is None))
 
     def share(row: tuple[float, float, float, int]) -> Share:
         return Share(row[0], row[1], row[2], Status(row[3]))
