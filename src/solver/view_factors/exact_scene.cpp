@@ -186,6 +186,14 @@ bool Box::is_apart_from(const Box& other) const {
          apart(other.high.x, low.x) || apart(other.high.y, low.y) || apart(other.high.z, low.z);
 }
 
+double gap(const Box& a, const Box& b) {
+  const auto along = [](double low_a, double high_a, double low_b, double high_b) {
+    return std::max({0.0, low_a - high_b, low_b - high_a});
+  };
+  return std::hypot(along(a.low.x, a.high.x, b.low.x, b.high.x), along(a.low.y, a.high.y, b.low.y, b.high.y),
+                    along(a.low.z, a.high.z, b.low.z, b.high.z));
+}
+
 Box box_of(std::span<const Point> points) {
   Box box;
   for (const Point& point : points) box.include(point.at);
@@ -275,6 +283,12 @@ Ring Points::ring(const std::vector<PointId>& corners) {
 
 Plane Points::plane_of(const Ring& ring) const {
   return make_plane(join((*this)[ring[0].from], (*this)[ring[1].from], (*this)[ring[2].from]), units_);
+}
+
+std::vector<Vec3> Points::positions(const Ring& ring) const {
+  std::vector<Vec3> result;
+  for (const Edge& edge : ring) result.push_back((*this)[edge.from].at);
+  return result;
 }
 
 PointId Points::crossing(const Edge& edge, const Plane& plane, std::uint32_t name) {

@@ -125,6 +125,8 @@ struct Box {
 };
 
 [[nodiscard]] Box box_of(std::span<const Point> points);
+// The distance of the two, but for roundings.
+[[nodiscard]] double gap(const Box& a, const Box& b);
 
 inline constexpr std::uint32_t kNoSurface = std::numeric_limits<std::uint32_t>::max();
 
@@ -222,6 +224,7 @@ class Points {
   // From where the line of the one edge crosses the plane to where that of the other does.
   Edge between_crossings(const Edge& one, const Edge& other, const Plane& plane, std::uint32_t name);
   [[nodiscard]] Plane plane_of(const Ring& ring) const;
+  [[nodiscard]] std::vector<Vec3> positions(const Ring& ring) const;  // rounded
   // Frees what only further rings need.
   void complete();
 

@@ -1,7 +1,6 @@
 #include "view_factors/pair.h"
 
 #include <algorithm>
-#include <iterator>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -25,12 +24,7 @@ constexpr std::uint64_t kSignsForACell = 1 << 15;  // more than where few occlud
 constexpr std::size_t kManyOccluders = 256;        // an event cell of more is not worth a visit to its centre
 constexpr double kShareOfParent = 0.125;           // of a cell's error that its halves may have
 constexpr double kTrifle = 0x1p-10;                // of the receiver's area: what may be left out at first
-constexpr std::size_t kMostDirections = 16;
-constexpr double kNearMiss = 0x1p-10, kRoundedHeight = 0x1p-44;  // of a corner and a plane
-constexpr std::size_t kMostToMiss = 256;
-constexpr double kSameDirection = 0x1p-30;
-constexpr std::size_t kMostToCover = 64;  // occluders of which one may cover another
-constexpr double kMostLeftOut = 0.5;      // of a cell's error; if more is due to it, less is left out
+constexpr double kMostLeftOut = 0.5;               // of a cell's error; if more is due to it, less is left out
 // Whether the difference of two rules tells their error. Where an edge is nearer than this, F may have a peak that both
 // rules miss. At 1.5 radii, two points more divide the error by 2.6^4 = 46.
 constexpr double kLeastRadii = 1.5;
@@ -127,7 +121,8 @@ Pair::Pair(const Scene& scene, Sight sight, FaceId receiver_face, std::shared_pt
       receiver_face_(receiver_face),
       whole_(std::move(whole)),
       bound_(sight_),
-      view_(sight_, memory, id) {
+      view_(sight_, memory, id),
+      omissions_(sight_, view_) {
   if (!sight_.is_of_open()) {
     if (sight_.near_horizon) {
       strip_.emplace(sight_, sight_.source, *sight_.near_horizon, sight_.points.plane_of(sight_.source),
@@ -203,169 +198,10 @@ Evaluated Pair::value_at(const Formula& formula, const Point& x) const {
   return precise([&](long bits) { return formula.at(ball_point(x, bits)); });
 }
 
-// Where all corners lie in the planes or far from them, as in exact models, nothing need be left out.
-bool Pair::has_near_misses(const Plane& source_plane) const {
-  const auto is_near_miss = [&](const Plane& plane, const Side& side, const Point& corner) {
-    const double height = std::abs(side.height(corner.at));
-    return height < kNearMiss && (height > kRoundedHeight || side_of(plane, corner) != 0);
-  };
-  const auto misses = [&](const Plane& plane) {
-    const Side side = Side::of(plane);
-    const auto any_of = [&](const Ring& ring) {
-      return std::ranges::any_of(ring, [&](const Edge& e) { return is_near_miss(plane, side, sight_.points[e.from]); });
-    };
-    return any_of(sight_.source) ||
-           std::ranges::any_of(sight_.root.corners, [&](const Point& p) { return is_near_miss(plane, side, p); }) ||
-           std::ranges::any_of(sight_.occluders, [&](const Occluder& o) { return any_of(o.ring); });
-  };
-  return misses(sight_.receiver) || misses(source_plane) ||
-         (sight_.occluders.size() <= kMostToMiss &&
-          std::ranges::any_of(sight_.occluders, [&](const Occluder& o) { return misses(*o.plane); }));
-}
-
-void Pair::find_bounds() {
-  if (std::exchange(has_bounds_, true) || sight_.is_of_open()) return;
-  const Plane source_plane = sight_.points.plane_of(sight_.source);
-  if (!has_near_misses(source_plane)) return;
-  std::vector<Vec3> directions;
-  const std::size_t most_directions = sight_.occluders.size() <= kMostToCover ? kMostDirections : 3;
-  const auto add_direction = [&](const Plane& plane) {
-    const Vec3 normal = Side::of(plane).normal;
-    const auto is_as = [&](const Vec3& known) { return kernel::length(kernel::cross(known, normal)) < kSameDirection; };
-    if (directions.size() < most_directions && std::ranges::none_of(directions, is_as)) directions.push_back(normal);
-  };
-  add_direction(sight_.receiver);
-  add_direction(source_plane);
-  for (const Occluder& occluder : sight_.occluders) add_direction(*occluder.plane);
-  for (std::uint32_t o = 0; o < sight_.occluders.size(); ++o) {
-    HiddenBound bound(sight_, source_plane, directions, sight_.occluders[o]);
-    if (bound.may_be_small()) hidden_.emplace_back(o, std::move(bound));
-  }
-  for (const WidenedOccluder& widened : sight_.widened) {
-    const Occluder& occluder = sight_.occluders[widened.original];
-    widened_.emplace_back(widened.original,
-                          StripBound(sight_, occluder.ring, widened.near, *occluder.plane, StripBound::Sides::kBoth));
-  }
-  if (sight_.occluders.size() <= kMostToCover) find_covers();
-}
-
-void Pair::find_covers() {
-  const auto add = [&](std::uint32_t inner, std::uint32_t outer, std::optional<CoverBound::Neighbour> neighbour) {
-    CoverBound bound(sight_, inner, outer, neighbour);
-    if (!bound.may_be_small()) return;
-    covers_.push_back({inner, {outer}, std::move(bound)});
-    if (neighbour) covers_.back().outer.push_back(neighbour->occluder);
-  };
-  for (std::uint32_t inner = 0; inner < sight_.occluders.size(); ++inner) {
-    for (std::uint32_t outer = 0; outer < sight_.occluders.size(); ++outer) {
-      if (outer == inner) continue;
-      add(inner, outer, {});
-      for (const auto& [neighbour, side] : view_.neighbours_of(outer)) {
-        if (neighbour == inner || neighbour >= sight_.occluders.size()) continue;
-        add(inner, outer, CoverBound::Neighbour{neighbour, side});
-      }
-    }
-  }
-}
-
-namespace {
-
-template <class Bounds>
-const auto& bound_of(const Bounds& bounds, std::uint32_t occluder) {
-  return std::ranges::lower_bound(bounds, occluder, {}, &Bounds::value_type::first)->second;
-}
-
-}  // namespace
-
-void Pair::bound(LeftOut& left_out, const Cell& cell) const {
-  left_out.over = left_out.under = 0.0;
-  if (left_out.candidates.empty()) return;
-  const std::vector<Vec3> corners = positions_of(cell.corners);
-  const double most = bound_.on(corners), size = size_of(cell);
-  for (std::size_t i = 0; i < left_out.candidates.size(); ++i) {
-    const std::uint32_t occluder = left_out.candidates[i].occluder, cover = left_out.covers[i];
-    if (cover == LeftOut::kWidened) {
-      left_out.under = (left_out.under + bound_of(widened_, occluder).on(corners, size)) * kSlack;
-    } else {
-      left_out.over += cover == LeftOut::kByItself ? bound_of(hidden_, occluder).on(corners, most, size)
-                                                   : covers_[cover].bound.on(corners, most, size);
-      left_out.over *= kSlack;
-    }
-  }
-}
-
-Candidates Pair::united(const Candidates& candidates, const LeftOut& left_out) const {
-  Candidates all;
-  all.reserve(candidates.size() + left_out.candidates.size());
-  std::ranges::merge(candidates, left_out.candidates, std::back_inserter(all), {}, &Candidate::occluder,
-                     &Candidate::occluder);
-  std::erase_if(all, [&](const Candidate& candidate) { return candidate.occluder >= sight_.occluders.size(); });
-  return all;
-}
-
-// Those that hide least come first. One that covers another is left out for what it hides itself, but not for being
-// covered: none covers in a circle. One that hides nothing may cover as well: no segment to the source meets it.
-LeftOut Pair::leave_out(const Cell& cell, Candidates& candidates, double trifle) {
-  LeftOut left_out;
-  if (candidates.empty()) return left_out;
-  find_bounds();
-  if (hidden_.empty() && covers_.empty() && widened_.empty()) return left_out;
-  struct Choice {
-    double most;
-    std::uint32_t occluder, cover;
-    [[nodiscard]] auto operator<=>(const Choice&) const = default;
-  };
-  std::vector<Choice> choices;
-  const std::vector<Vec3> corners = positions_of(cell.corners);
-  const double most = bound_.on(corners), size = size_of(cell);
-  std::vector<bool> is_here(sight_.occluders.size()), covers_other(sight_.occluders.size());
-  for (const Candidate& candidate : candidates) is_here[candidate.occluder] = true;
-  const std::vector<bool> was_here = is_here;
-  const auto are_kept = [&](const std::vector<std::uint32_t>& outer) {
-    return std::ranges::all_of(outer,
-                               [&](std::uint32_t o) { return is_here[o] || (!was_here[o] && view_.hides_nothing(o)); });
-  };
-  for (const auto& [occluder, bound] : hidden_) {
-    if (is_here[occluder]) choices.push_back({bound.on(corners, most, size), occluder, LeftOut::kByItself});
-  }
-  for (std::uint32_t i = 0; i < covers_.size(); ++i) {
-    const Cover& cover = covers_[i];
-    if (!is_here[cover.inner] || !are_kept(cover.outer)) continue;
-    choices.push_back({cover.bound.on(corners, most, size), cover.inner, i});
-  }
-  std::ranges::sort(choices);
-  std::vector<std::uint32_t> way(sight_.occluders.size());
-  for (const auto& [hidden, occluder, cover] : choices) {
-    if (left_out.over + hidden > trifle) break;
-    if (!is_here[occluder]) continue;
-    if (cover != LeftOut::kByItself) {
-      const std::vector<std::uint32_t>& outer = covers_[cover].outer;
-      if (covers_other[occluder] || !are_kept(outer)) continue;
-      for (const std::uint32_t o : outer) covers_other[o] = true;
-    }
-    is_here[occluder] = false;
-    way[occluder] = cover;
-    left_out.over = (left_out.over + hidden) * kSlack;
-  }
-  Candidates instead;
-  for (std::uint32_t i = 0; i < widened_.size(); ++i) {
-    const auto& [occluder, strip] = widened_[i];
-    if (!is_here[occluder]) continue;
-    const double hidden = strip.on(corners, size);
-    if (left_out.width() + hidden > trifle) continue;
-    is_here[occluder] = false;
-    way[occluder] = LeftOut::kWidened;
-    left_out.under = (left_out.under + hidden) * kSlack;
-    instead.push_back({static_cast<std::uint32_t>(sight_.occluders.size()) + i});
-  }
-  std::erase_if(candidates, [&](const Candidate& candidate) {
-    if (is_here[candidate.occluder]) return false;
-    left_out.candidates.push_back(candidate);
-    left_out.covers.push_back(way[candidate.occluder]);
-    return true;
-  });
-  candidates.insert(candidates.end(), instead.begin(), instead.end());
-  return left_out;
+Extent Pair::extent_of(const Cell& cell) const {
+  std::vector<Vec3> corners = positions_of(cell.corners);
+  const double most = bound_.on(corners);
+  return {std::move(corners), most, size_of(cell)};
 }
 
 // Only where all of these sides are seen, and those before and after lead to them: then the contour goes round the
@@ -398,8 +234,7 @@ std::shared_ptr<const Formula> Pair::formula_to_horizon(const std::vector<Bounda
 // Whether the boundary of the last view, which is known, needs many bits, as where edges are almost seen along one
 // another.
 bool Pair::has_slivers(const Cell& cell) {
-  find_bounds();
-  if (view_.parts().empty() || (hidden_.empty() && covers_.empty() && widened_.empty())) return false;
+  if (view_.parts().empty() || !omissions_.are_possible()) return false;
   const Formula formula(sight_, view_.parts(), view_.has_horizon());
   return !(formula.at(near_point_inside(cell)).rounding <= limits_.rounding);
 }
@@ -411,12 +246,12 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enou
   ++cells_made_;
   CellView::Outcome outcome = view(cell, depth, candidates);
   LeftOut left_out;
-  if (outcome != CellView::Outcome::kKnown || has_slivers(cell)) {
-    left_out = leave_out(cell, candidates, trifle);
+  if (!candidates.empty() && (outcome != CellView::Outcome::kKnown || has_slivers(cell))) {
+    left_out = omissions_.leave_out(extent_of(cell), candidates, trifle);
     if (!left_out.candidates.empty()) outcome = view(cell, depth, candidates);
   }
   if (outcome == CellView::Outcome::kKnown && view_.parts().empty() && !view_.has_horizon()) return;
-  const auto all = [&] { return united(candidates, left_out); };
+  const auto all = [&] { return omissions_.united(candidates, left_out); };
   if (size_of(cell) <= limits_.negligible_area) {
     add_dark(std::move(cell), all(), view_.way(depth), nullptr, shares);
     shares.back().next = Share::Next::kNextStage;
@@ -711,7 +546,7 @@ std::vector<Share> Pair::improve(Share share, const Budget& budget) {
   const double enough = kShareOfParent * share.error;
   if (share.left_out.width() > kMostLeftOut * share.error || (share.formula == nullptr && share.way.empty())) {
     view_.start();
-    look(std::move(share.cell), 0, united(share.candidates, share.left_out), enough, enough, result);
+    look(std::move(share.cell), 0, omissions_.united(share.candidates, share.left_out), enough, enough, result);
     return result;
   }
   const Units& units = sight_.points.units();
@@ -727,13 +562,13 @@ std::vector<Share> Pair::improve(Share share, const Budget& budget) {
     for (Cell* part : {&parts.negative, &parts.positive}) {
       Share half = share;
       half.cell = std::move(*part);
-      bound(half.left_out, half.cell);
+      omissions_.bound(half.left_out, extent_of(half.cell));
       add_smooth(std::move(half), enough, result);
     }
   } else {
     const std::size_t depth = share.way.size();
     view_.resume(std::move(share.way));
-    const Candidates candidates = united(share.candidates, share.left_out);
+    const Candidates candidates = omissions_.united(share.candidates, share.left_out);
     look(std::move(parts.negative), depth, candidates, enough, enough, result);
     look(std::move(parts.positive), depth, candidates, enough, enough, result);
   }

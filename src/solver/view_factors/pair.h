@@ -15,6 +15,7 @@
 #include "view_factors/cell_view.h"
 #include "view_factors/factor_bounds.h"
 #include "view_factors/formula.h"
+#include "view_factors/left_out.h"
 #include "view_factors/sight.h"
 
 namespace exactff::view_factors {
@@ -83,18 +84,6 @@ std::vector<WeightedPlace> gauss_places(const std::vector<Vec3>& ring) {
 }
 
 // --- Pair ---
-
-// Candidates that are left out of a cell's view, since they hide little, or little that others do not hide, or instead
-// of which widened ones are there.
-struct LeftOut {
-  static constexpr std::uint32_t kByItself = static_cast<std::uint32_t>(-1), kWidened = static_cast<std::uint32_t>(-2);
-
-  Candidates candidates;
-  std::vector<std::uint32_t> covers;  // of each: a cover of the pair, or one of the above
-  double over = 0.0, under = 0.0;     // by how much the integral may be too large, or too small
-
-  [[nodiscard]] double width() const { return over + under; }
-};
 
 // A cell with the integral of the point factor over it, in squares of the unit of Point::at.
 struct Share {
@@ -195,17 +184,10 @@ class Pair {
   void look(Cell cell, std::size_t depth, Candidates candidates, double enough, double trifle,
             std::vector<Share>& shares);
   [[nodiscard]] bool has_slivers(const Cell& cell);
-  // Of candidates by which little is hidden from the cell, those that hide least, as many as may be left out.
-  [[nodiscard]] LeftOut leave_out(const Cell& cell, Candidates& candidates, double trifle);
-  void find_bounds();
-  [[nodiscard]] bool has_near_misses(const Plane& source_plane) const;
-  void find_covers();
+  // As bounds of what is left out ask for it.
+  [[nodiscard]] Extent extent_of(const Cell& cell) const;
   // Of a view with these parts, if the source as far as the horizon has a formula, too.
   [[nodiscard]] std::shared_ptr<const Formula> formula_to_horizon(const std::vector<BoundaryPart>& seen) const;
-  // Its bounds, for the cell.
-  void bound(LeftOut& left_out, const Cell& cell) const;
-  // All candidates again.
-  [[nodiscard]] Candidates united(const Candidates& candidates, const LeftOut& left_out) const;
   static void count(Share& share, LeftOut left_out);
   // The share has its cell and what is seen from it. `most`: the largest error that is useful.
   void add_smooth(Share share, double most, std::vector<Share>& shares);
@@ -267,18 +249,9 @@ class Pair {
   Limits limits_;
   FactorBound bound_;
   std::vector<FactorBound> of_occluders_;  // from their positive sides, then from the others; of what is open
-  // What may be left out of cells, found when this is first asked for.
-  struct Cover {
-    std::uint32_t inner;
-    std::vector<std::uint32_t> outer;
-    CoverBound bound;
-  };
-  bool has_bounds_ = false;
-  std::vector<std::pair<std::uint32_t, HiddenBound>> hidden_;  // by occluders that may hide little, ascending
-  std::vector<Cover> covers_;
-  std::vector<std::pair<std::uint32_t, StripBound>> widened_;  // of the widened ones, by occluders
-  std::optional<StripBound> strip_;                            // of Sight::near_horizon
+  std::optional<StripBound> strip_;        // of Sight::near_horizon
   CellView view_;
+  Omissions omissions_;
   std::size_t cells_made_ = 0, extra_cost_ = 0;
   Budget budget_;  // of all calls so far and this one
 };
