@@ -219,14 +219,14 @@ void hold_against_baseline(Report& report, const std::filesystem::path& path, do
   const auto refuse = [&](const char* what, const char* why, const char* suggestion) {
     throw InputError({path.string(), 0, what, why, suggestion});
   };
-  constexpr const char* kNothing = "there is nothing to compare with";
+  constexpr const char* kNoNumbers = "there is nothing to compare with";
   constexpr const char* kRecord = "record one with --write-baseline";
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) refuse("this baseline file does not exist", kNothing, kRecord);
+  if (!std::filesystem::exists(path, ignored)) refuse("this baseline file does not exist", kNoNumbers, kRecord);
   const std::string text = text::read_text_file(path, "a file written by --write-baseline");
   try {
     const ordered_json baseline = ordered_json::parse(text);
-    if (baseline.at("baseline") != kFormat) refuse(kNoBaseline, kNothing, kRecord);
+    if (baseline.at("baseline") != kFormat) refuse(kNoBaseline, kNoNumbers, kRecord);
     if (baseline.at("truth").at("identity") != report.identity ||
         baseline.at("relative_floor") != report.criteria.relative_floor) {
       refuse("was recorded with different rows, true values or relative floor", "its errors cannot be compared",
@@ -237,7 +237,7 @@ void hold_against_baseline(Report& report, const std::filesystem::path& path, do
       hold(report, baseline, report.sources[s], report.by_source[s], slack);
     }
   } catch (const nlohmann::json::exception&) {
-    refuse(kNoBaseline, kNothing, kRecord);
+    refuse(kNoBaseline, kNoNumbers, kRecord);
   }
 }
 

@@ -198,6 +198,7 @@ std::vector<Vec3> CoverBound::within(std::span<const double> reach) const {
 }
 
 double CoverBound::on(std::span<const Vec3> cell, double most, double size) const {
+  if (sides_.empty()) return HUGE_VAL;
   std::vector<double> reach(sides_.size(), -HUGE_VAL);
   for (std::size_t i = 0; i < sides_.size(); ++i) {
     for (const Vec3& corner : inner_) reach[i] = std::max(reach[i], kernel::dot(outwards_[i], corner));

@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "exactff/exact.h"
+#include "exactff/receiver.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
 #include "kernel/vec.h"
 #include "support/random_scenes.h"
 #include "unit/solver/factor_at.h"
 #include "view_factors/factor_bounds.h"
+#include "view_factors/left_out.h"
 #include "view_factors/prepared_patch.h"
 #include "view_factors/seen_parts.h"
 #include "view_factors/sight.h"
@@ -58,6 +60,117 @@ TEST(FactorBound, IsAtLeastEveryFormFactorOfTheCell) {
   }
   EXPECT_GE(seeing, 40);
   EXPECT_GE(tight, seeing / 4) << "of small patches, it should be of the order of the factor";
+}
+
+// --- What occluders hide ---
+
+// A floor, a wall or a ceiling as the source, and triangles between: low ones, such that stand at the wall, any.
+struct Hiding {
+  PlainScene open;                        // "receiver" and "source"
+  std::vector<std::vector<Vec3>> things;  // faces that hide some of it
+
+  [[nodiscard]] Scene with(std::size_t first, std::size_t count) const {
+    PlainScene scene = open;
+    for (std::size_t i = first; i < first + count; ++i)
+      scene.add_ring(scene.patch("thing" + std::to_string(i)), things[i]);
+    return generate::build(scene);
+  }
+  // The mean over random points of the receiver.
+  [[nodiscard]] std::vector<double> factors(std::size_t first, std::size_t count, std::uint64_t seed) const {
+    const Scene scene = with(first, count);
+    const ExactSource source(scene, scene.select("source"));
+    std::vector<double> values;
+    for (const Receiver& receiver : sample_receivers(scene, scene.faces_of(scene.select("receiver")), 256, seed)) {
+      values.push_back(exact_form_factor(scene, receiver, source).value);
+    }
+    return values;
+  }
+};
+
+// One before a wall that hides another but for slivers.
+Hiding random_cover(Random& random) {
+  Hiding hiding;
+  hiding.open.add_ring(hiding.open.patch("receiver"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  hiding.open.add_ring(hiding.open.patch("source"), {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}});
+  const double small = 0x1p-8 * random.unit(), x = std::ldexp(1.0, -random.integer(2, 8)), high = random.unit();
+  const auto aside = [&] { return random.between(-small, small); };
+  hiding.things.push_back({{x, 0, 0}, {x, 1, 0}, {x, 1, high}, {x, 0, high}});
+  const double y = aside(), to_y = 1.0 + aside(), to_z = high + aside();
+  hiding.things.push_back({{0.5 * x, y, 0}, {0.5 * x, to_y, 0}, {0.5 * x, to_y, to_z}, {0.5 * x, y, to_z}});
+  return hiding;
+}
+
+Hiding random_hiding(Random& random) {
+  if (random.one_in(4)) return random_cover(random);
+  Hiding hiding;
+  hiding.open.add_ring(hiding.open.patch("receiver"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  generate::PlainPatch& source = hiding.open.patch("source");
+  if (random.one_in(2)) {
+    hiding.open.add_ring(source, {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}});
+  } else {
+    hiding.open.add_ring(source, {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}});
+  }
+  const double small = std::ldexp(1.0, -random.integer(0, 12));
+  const int kind = random.integer(0, 3);
+  const auto corner = [&] {
+    Vec3 v{random.between(-0.2, 1.2), random.between(-0.2, 1.2), random.unit()};
+    if (kind == 0) v.z = small * v.z;
+    if (kind == 1) v.x = small * v.x;
+    if (kind == 2) v.y = small * (v.y - 0.5);
+    return v;
+  };
+  for (int i = 0; i < 2; ++i) hiding.things.push_back({corner(), corner(), corner()});
+  // The second is perhaps about the first one, but for a sliver.
+  if (random.one_in(2)) {
+    hiding.things[1] = hiding.things[0];
+    for (Vec3& v : hiding.things[1])
+      v = {v.x + small * random.unit(), v.y + small * random.unit(), v.z + small * random.unit()};
+  }
+  return hiding;
+}
+
+// The mean of how much less is seen, and five standard errors of it.
+std::pair<double, double> mean_of_difference(const std::vector<double>& more, const std::vector<double>& less) {
+  double sum = 0.0, squares = 0.0;
+  const auto n = static_cast<double>(more.size());
+  for (std::size_t i = 0; i < more.size(); ++i) sum += more[i] - less[i];
+  for (std::size_t i = 0; i < more.size(); ++i) squares += std::pow(more[i] - less[i] - sum / n, 2);
+  return {sum / n, 5.0 * std::sqrt(squares / n / (n - 1.0))};
+}
+
+TEST(HiddenBound, IsAtLeastWhatIsHidden) {
+  int hidden = 0, covered = 0, small = 0;
+  for (std::uint64_t s = 0; s < scaled_count(300); ++s) {
+    SCOPED_TRACE("seed " + std::to_string(seed_of(s)));
+    Random random(seed_of(s));
+    const Hiding hiding = random_hiding(random);
+    const Scene scene = hiding.with(0, 2);
+    const ExactScene exact(scene);
+    const Part receiver = parts_of(exact, scene.select("receiver")).front();
+    const Part source = parts_of(exact, scene.select("source")).front();
+    const auto sight = sight_of(exact, SeenParts(exact).seen_from(receiver).occluders, receiver, source);
+    if (!sight || sight->occluders.size() != 2) continue;
+    const std::vector<Vec3> corners = positions_of(sight->root.corners);
+    const double size = area(corners);
+    std::vector<Vec3> directions;
+    for (const Plane& plane : {sight->receiver, *sight->occluders[0].plane, *sight->occluders[1].plane}) {
+      directions.push_back(Side::of(plane).normal);
+    }
+    const auto open = hiding.factors(0, 0, s), first = hiding.factors(0, 1, s), both = hiding.factors(0, 2, s);
+    const HiddenBound bound(*sight, sight->points.plane_of(sight->source), directions, sight->occluders[0]);
+    const double most = bound.on(corners, 1.0, size) / size;
+    const auto [by_first, error] = mean_of_difference(open, first);
+    EXPECT_LE(by_first - error, most);
+    hidden += by_first > error ? 1 : 0;
+    small += most < 0.1 ? 1 : 0;
+    const double most_of_second = CoverBound(*sight, 1, 0, {}).on(corners, 1.0, size) / size;
+    const auto [by_second, error_of_second] = mean_of_difference(first, both);
+    EXPECT_LE(by_second - error_of_second, most_of_second);
+    covered += most_of_second < 0.1 ? 1 : 0;
+  }
+  EXPECT_GE(hidden, 60);
+  EXPECT_GE(small, 60);
+  EXPECT_GE(covered, 20);
 }
 
 // Of hulls of all sizes about a point of the receiver, also of those that lie on both sides of the source's plane.
