@@ -102,6 +102,29 @@ TEST(AlmostClosedRooms, HaveTheFactorsOfTheRoomThatWasMeant) {
   EXPECT_LE(cells, 12 * meant_cells + 100 * judged) << meant_cells;
 }
 
+// A strip of the floor under a plate a hair above it, so narrow that the plate may be left out: the rest of the floor
+// sees what it saw, and the strip next to nothing.
+TEST(AlmostClosedRooms, CountWhatIsLeftOut) {
+  constexpr double kStrip = 0x1p-12, kHigh = 0x1p-24;
+  const auto room = [](double from_x, bool plate) {
+    PlainScene scene;
+    scene.add_ring(scene.patch("floor"), {{from_x, 0, 0}, {1, 0, 0}, {1, 1, 0}, {from_x, 1, 0}});
+    scene.add_ring(scene.patch("ceiling"), {{0, 0, 4}, {0, 1, 4}, {1, 1, 4}, {1, 0, 4}});
+    if (plate)
+      scene.add_ring(scene.patch("plate"), {{0, 0, kHigh}, {kStrip, 0, kHigh}, {kStrip, 1, kHigh}, {0, 1, kHigh}});
+    return generate::build(scene);
+  };
+  const Scene open = room(kStrip, false), covered = room(0.0, true);
+  const ViewFactor rest = view_factor(open, open.select("floor"), open.select("ceiling"), {.accuracy = 1e-9});
+  for (const bool certify : {false, true}) {
+    const ViewFactor f = view_factor(covered, covered.select("floor"), covered.select("ceiling"),
+                                     {.accuracy = 1e-3, .both_directions = true, .certify = certify});
+    EXPECT_TRUE(f.accurate);
+    EXPECT_LE(f.lower, (1.0 - kStrip) * rest.lower + 2.0 * kHigh);
+    EXPECT_GE(f.upper, (1.0 - kStrip) * rest.lower);
+  }
+}
+
 // Gaps so large that what passes them counts.
 TEST(AlmostClosedRooms, HoldMeansOfPoints) {
   constexpr std::size_t kPoints = 1 << 11;
