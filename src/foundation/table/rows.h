@@ -1,4 +1,4 @@
-// Makes a table from lists of values, one for each of its columns: for tables that nobody reads back into rows.
+// Fills a table row by row, value by value. For tables that are only written.
 #pragma once
 
 #include <array>

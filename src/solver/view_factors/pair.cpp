@@ -132,8 +132,7 @@ Pair::Pair(const Scene& scene, Sight sight, FaceId receiver_face, std::shared_pt
   }
   for (const int side : {1, -1}) {
     for (const Occluder& occluder : sight_.occluders) {
-      std::vector<Vec3> corners;
-      for (const Edge& edge : occluder.ring) corners.push_back(sight_.points[edge.from].at);
+      const std::vector<Vec3> corners = sight_.points.positions(occluder.ring);
       Plane plane = *occluder.plane;
       for (double& coefficient : plane.rounded) coefficient *= side;
       of_occluders_.emplace_back(corners, plane, sight_.receiver);
@@ -231,12 +230,15 @@ std::shared_ptr<const Formula> Pair::formula_to_horizon(const std::vector<Bounda
   return std::make_shared<const Formula>(sight_, parts);
 }
 
-// Whether the boundary of the last view, which is known, needs many bits, as where edges are almost seen along one
-// another.
-bool Pair::has_slivers(const Cell& cell) {
-  if (view_.parts().empty() || !omissions_.are_possible()) return false;
-  const Formula formula(sight_, view_.parts(), view_.has_horizon());
-  return !(formula.at(near_point_inside(cell)).rounding <= limits_.rounding);
+std::shared_ptr<const Formula> Pair::formula_of_view(CellView::Outcome outcome) const {
+  if (outcome != CellView::Outcome::kKnown || (view_.parts().empty() && !view_.has_horizon())) return nullptr;
+  return std::make_shared<const Formula>(sight_, view_.parts(), view_.has_horizon());
+}
+
+// As where edges are almost seen along one another.
+bool Pair::needs_many_bits(const Formula& formula, const Cell& cell) {
+  return !formula.boundary().empty() && omissions_.are_possible() &&
+         !(formula.at(near_point_inside(cell)).rounding <= limits_.rounding);
 }
 
 // Depth first: the cells that wait are the siblings of those on the way.
@@ -245,12 +247,18 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enou
   kernel::poll();
   ++cells_made_;
   CellView::Outcome outcome = view(cell, depth, candidates);
+  std::shared_ptr<const Formula> formula = formula_of_view(outcome);
   LeftOut left_out;
-  if (!candidates.empty() && (outcome != CellView::Outcome::kKnown || has_slivers(cell))) {
+  const bool is_simple =
+      outcome == CellView::Outcome::kKnown && (formula == nullptr || !needs_many_bits(*formula, cell));
+  if (!candidates.empty() && !is_simple) {
     left_out = omissions_.leave_out(extent_of(cell), candidates, trifle);
-    if (!left_out.candidates.empty()) outcome = view(cell, depth, candidates);
+    if (!left_out.candidates.empty()) {
+      outcome = view(cell, depth, candidates);
+      formula = formula_of_view(outcome);
+    }
   }
-  if (outcome == CellView::Outcome::kKnown && view_.parts().empty() && !view_.has_horizon()) return;
+  if (outcome == CellView::Outcome::kKnown && formula == nullptr) return;
   const auto all = [&] { return omissions_.united(candidates, left_out); };
   if (size_of(cell) <= limits_.negligible_area) {
     add_dark(std::move(cell), all(), view_.way(depth), nullptr, shares);
@@ -261,7 +269,7 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enou
     case CellView::Outcome::kKnown:
       return add_smooth({.cell = std::move(cell),
                          .candidates = left_out.candidates.empty() ? Candidates{} : std::move(candidates),
-                         .formula = std::make_shared<const Formula>(sight_, view_.parts(), view_.has_horizon()),
+                         .formula = std::move(formula),
                          .to_horizon = formula_to_horizon(view_.parts()),
                          .way = {},
                          .cut = nullptr,
@@ -270,7 +278,8 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enou
                         HUGE_VAL, shares);
     case CellView::Outcome::kCrossings:
       add_event(std::move(cell), depth, std::move(candidates), std::vector(view_.triples()), shares);
-      return count(shares.back(), std::move(left_out));
+      shares.back().left_out = std::move(left_out);
+      return count_left_out(shares.back());
     case CellView::Outcome::kCut:
       break;
   }
@@ -282,7 +291,8 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enou
   }
   if (cost() >= budget_.cost) {
     add_event(std::move(cell), depth, std::move(candidates), {}, shares);
-    return count(shares.back(), std::move(left_out));
+    shares.back().left_out = std::move(left_out);
+    return count_left_out(shares.back());
   }
   Halves halves = cut(cell, sight_.receiver, view_.best_cut(), sight_.points.units());
   candidates = all();
@@ -291,8 +301,7 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enou
 }
 
 // What points see tells nothing of what is left out.
-void Pair::count(Share& share, LeftOut left_out) {
-  share.left_out = std::move(left_out);
+void Pair::count_left_out(Share& share) {
   if (share.is_dark || share.left_out.candidates.empty()) return;
   share.integral += 0.5 * (share.left_out.under - share.left_out.over);
   share.error = (share.error + 0.5 * share.left_out.width() + 0x1p-52 * std::abs(share.integral)) * kSlack;
@@ -419,8 +428,7 @@ void Pair::add_smooth(Share share, double most, std::vector<Share>& shares) {
   share.next = next_of(found);
   share.stage = limits_.stage;
   share.bound = found.bound;
-  LeftOut left_out = std::move(share.left_out);
-  count(share, std::move(left_out));
+  count_left_out(share);
   shares.push_back(std::move(share));
 }
 
@@ -532,7 +540,7 @@ bool Pair::improve_whole(Share& share) {
   share.error = found.error;
   share.next = next_of(found);
   share.bound = found.bound;
-  count(share, std::move(share.left_out));
+  count_left_out(share);
   return true;
 }
 
@@ -559,6 +567,7 @@ std::vector<Share> Pair::improve(Share share, const Budget& budget) {
   Halves parts = cut(share.cell, sight_.receiver, by, units);
   if (share.formula != nullptr) {
     cells_made_ += 2;
+    share.cell = {};
     for (Cell* part : {&parts.negative, &parts.positive}) {
       Share half = share;
       half.cell = std::move(*part);
@@ -568,9 +577,9 @@ std::vector<Share> Pair::improve(Share share, const Budget& budget) {
   } else {
     const std::size_t depth = share.way.size();
     view_.resume(std::move(share.way));
-    const Candidates candidates = omissions_.united(share.candidates, share.left_out);
+    Candidates candidates = omissions_.united(share.candidates, share.left_out);
     look(std::move(parts.negative), depth, candidates, enough, enough, result);
-    look(std::move(parts.positive), depth, candidates, enough, enough, result);
+    look(std::move(parts.positive), depth, std::move(candidates), enough, enough, result);
   }
   return result;
 }

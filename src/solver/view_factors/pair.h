@@ -183,12 +183,15 @@ class Pair {
   // `trifle`: what may be hidden by candidates that are left out.
   void look(Cell cell, std::size_t depth, Candidates candidates, double enough, double trifle,
             std::vector<Share>& shares);
-  [[nodiscard]] bool has_slivers(const Cell& cell);
+  // Null where the last view is not known, or nothing is seen.
+  [[nodiscard]] std::shared_ptr<const Formula> formula_of_view(CellView::Outcome outcome) const;
+  [[nodiscard]] bool needs_many_bits(const Formula& formula, const Cell& cell);
   // As bounds of what is left out ask for it.
   [[nodiscard]] Extent extent_of(const Cell& cell) const;
   // Of a view with these parts, if the source as far as the horizon has a formula, too.
   [[nodiscard]] std::shared_ptr<const Formula> formula_to_horizon(const std::vector<BoundaryPart>& seen) const;
-  static void count(Share& share, LeftOut left_out);
+  // In the integral and the error.
+  static void count_left_out(Share& share);
   // The share has its cell and what is seen from it. `most`: the largest error that is useful.
   void add_smooth(Share share, double most, std::vector<Share>& shares);
   // `triples`: all that is undecided; if empty, more may be.
