@@ -4,9 +4,9 @@
 // is column j. Of a black rest with the shares o: t = rho o + rho F t, and b = o + F t solves b = o + F rho b. Here o
 // has bounds as well, and t grows with it.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "exactff/radiosity.h"
@@ -16,6 +16,7 @@
 #include "matrix/columns.h"
 #include "matrix/row_facts.h"
 #include "radiosity/system.h"
+#include "table/rows.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
@@ -239,27 +240,17 @@ std::string esatan_text(const Scene& scene, const Exchange& exchange) {
 }
 
 table::Table table_of(const Scene& scene, const Exchange& exchange, const ViewFactorOptions& options) {
-  using table::Cell;
   using table::Strength;
-  using table::Type;
   table::Head head;
   head.set("scene_hash", scene.hash());
   matrix::set_options(head, options);
-  const auto number = [](const char* name, const char* unit, Strength strength) {
-    return table::Column{name, Type::kNumber, unit, strength};
-  };
-  table::Table table("exchange", head,
-                     {{.name = "from", .type = Type::kText, .key = true},
-                      {.name = "to", .type = Type::kText, .key = true},
-                      {.name = "channel", .type = Type::kText, .key = true},
-                      number("exchange", "", Strength::kEstimated),
-                      number("lower", "", Strength::kStated),
-                      number("upper", "", Strength::kStated),
-                      number("conductor", "area", Strength::kEstimated),
-                      number("conductor_lower", "area", Strength::kStated),
-                      number("conductor_upper", "area", Strength::kStated),
-                      {.name = "claim", .type = Type::kText, .strength = Strength::kProved}});
-  const auto known = [](double x) { return std::isfinite(x) ? Cell(x) : Cell(); };
+  table::Rows rows(
+      "exchange", std::move(head),
+      {table::keys("from,to,channel"), table::numbers("exchange", Strength::kEstimated),
+       table::numbers("lower,upper", Strength::kStated), table::numbers("conductor", Strength::kEstimated, "area"),
+       table::numbers("conductor_lower,conductor_upper", Strength::kStated, "area"),
+       table::texts("claim", Strength::kProved)});
+  const auto known = [](double x) { return std::isfinite(x) ? std::optional(x) : std::nullopt; };
   const std::size_t n = exchange.patches.size();
   for (std::size_t i = 0; i < n; ++i) {
     const std::string from = scene.name_of(exchange.patches[i]);
@@ -268,8 +259,8 @@ table::Table table_of(const Scene& scene, const Exchange& exchange, const ViewFa
       const std::string_view name = exchange.channels.size() == 1 ? "all" : kChannelNames[c];
       const std::string_view claim = channel.is_bounded() ? to_string(exchange.claim) : kNoBound;
       const auto add = [&](std::string_view to, const BoundedValue& b, const BoundedValue& g) {
-        table.append(std::array<Cell, 10>{std::string_view(from), to, name, known(b.value), b.lower, known(b.upper),
-                                          known(g.value), g.lower, known(g.upper), claim});
+        rows << from << to << name << known(b.value) << b.lower << known(b.upper) << known(g.value) << g.lower
+             << known(g.upper) << claim;
       };
       for (std::size_t j = 0; j < n; ++j) {
         add(scene.name_of(exchange.patches[j]), channel.factors[i * n + j], channel.conductors[i * n + j]);
@@ -278,7 +269,7 @@ table::Table table_of(const Scene& scene, const Exchange& exchange, const ViewFa
       if (!channel.open.empty()) add(matrix::kOpen, channel.open[i], channel.conductors_to_open[i]);
     }
   }
-  return table;
+  return rows.take();
 }
 
 }  // namespace exactff::radiosity

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string_view>
 
 #include "exactff/radiosity.h"
@@ -11,6 +12,7 @@
 #include "matrix/columns.h"
 #include "matrix/row_facts.h"
 #include "radiosity/system.h"
+#include "table/rows.h"
 #include "text/csv_dialect.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -288,38 +290,28 @@ ThermalConditions read_conditions(const Scene& scene, const std::filesystem::pat
 }
 
 table::Table table_of(const Scene& scene, const Temperatures& found, const ViewFactorOptions& options) {
-  using table::Cell;
   using table::Strength;
-  using table::Type;
   table::Head head;
   head.set("scene_hash", scene.hash());
   matrix::set_options(head, options);
-  const auto number = [](const char* name, const char* unit, Strength strength) {
-    return table::Column{name, Type::kNumber, unit, strength};
-  };
-  table::Table table("temperatures", head,
-                     {{.name = "patch", .type = Type::kText, .key = true},
-                      number("temperature", "K", Strength::kEstimated),
-                      number("temperature_lower", "K", Strength::kStated),
-                      number("temperature_upper", "K", Strength::kStated),
-                      number("heat", "W", Strength::kEstimated),
-                      number("heat_lower", "W", Strength::kStated),
-                      number("heat_upper", "W", Strength::kStated),
-                      number("emissivity", "", Strength::kGiven),
-                      number("area", "area", Strength::kEstimated),
-                      {.name = "claim", .type = Type::kText, .strength = Strength::kProved}});
+  table::Rows rows(
+      "temperatures", std::move(head),
+      {table::keys("patch"), table::numbers("temperature", Strength::kEstimated, "K"),
+       table::numbers("temperature_lower,temperature_upper", Strength::kStated, "K"),
+       table::numbers("heat", Strength::kEstimated, "W"),
+       table::numbers("heat_lower,heat_upper", Strength::kStated, "W"), table::numbers("emissivity", Strength::kGiven),
+       table::numbers("area", Strength::kEstimated, "area"), table::texts("claim", Strength::kProved)});
   const std::string_view claim = to_string(found.claim);
   for (std::size_t i = 0; i < found.patches.size(); ++i) {
     const BoundedValue &t = found.temperatures[i], &q = found.heats[i];
-    const std::string name = scene.name_of(found.patches[i]);
-    table.append(std::array<Cell, 10>{std::string_view(name), t.value, t.lower, t.upper, q.value, q.lower, q.upper,
-                                      found.emissivities[i], found.areas[i], claim});
+    rows << scene.name_of(found.patches[i]) << t.value << t.lower << t.upper << q.value << q.lower << q.upper
+         << found.emissivities[i] << found.areas[i] << claim;
   }
+  constexpr std::optional<double> kNone;
   for (const auto& [name, q] : {std::pair(matrix::kBack, found.to_back), std::pair(matrix::kOpen, found.to_open)}) {
-    table.append(
-        std::array<Cell, 10>{name, Cell(), Cell(), Cell(), -q.value, -q.upper, -q.lower, Cell(), Cell(), claim});
+    rows << name << kNone << kNone << kNone << -q.value << -q.upper << -q.lower << kNone << kNone << claim;
   }
-  return table;
+  return rows.take();
 }
 
 }  // namespace exactff::radiosity
