@@ -460,6 +460,34 @@ TEST(ViewFactors, BehindBoxesAreThoseOfBothDirections) {
   EXPECT_GE(judged, 20U);
 }
 
+// By default each pair of their parts is there once. All faces are one patch, of a building or of boxes, and some of
+// what it sees of itself is found by points.
+TEST(ViewFactors, OfPatchesToThemselvesAreThoseOfBothDirections) {
+  std::size_t judged = 0, by_points = 0;
+  for (std::uint64_t s = 0; s < scaled_count(12); ++s) {
+    Random random(seed_of(s));
+    generate::PlainScene plain = s % 2 == 0 ? random_building(random).scene : boxes_between(random);
+    for (std::size_t p = 1; p < plain.patches.size(); ++p) {
+      for (const generate::PlainFace& face : plain.patches[p].faces) plain.patches[0].faces.push_back(face);
+    }
+    plain.patches.resize(1);
+    const Scene scene = generate::build(plain);
+    const Selection all = patch_of(scene, 0);
+    const ViewFactor both = view_factor(
+        scene, all, all, {.accuracy = 1e-4, .budget = 4000, .sample_crowds = false, .both_directions = true});
+    for (const bool points_too : {false, true}) {
+      const ViewFactor once = view_factor(
+          scene, all, all, {.accuracy = 1e-4, .budget = points_too ? 1500U : 2000U, .sample_crowds = points_too});
+      EXPECT_LE(once.lower, both.upper) << s;
+      EXPECT_GE(once.upper, both.lower) << s;
+      judged += once.upper - once.lower < 0.05 && both.upper - both.lower < 0.05 ? 1 : 0;
+      by_points += once.way == Way::kPoints ? 1 : 0;
+    }
+  }
+  EXPECT_GE(judged, 10U);
+  EXPECT_GE(by_points, 2U);
+}
+
 // Inner edges of a mesh are not looked at, its ridges are: whether faces share vertices must not matter.
 TEST(ViewFactors, BehindAMeshAreThoseBehindItsFaces) {
   enum class Vertices { kShared, kOfEachFace };

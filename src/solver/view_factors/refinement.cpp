@@ -118,7 +118,9 @@ Refinement::Refinement(const ExactScene& scene, const SeenParts& seen, const Pre
       options_(options),
       pause_(pauses() ? kFirstPause : kNoPause),
       smaller_area_(counted_area(from, to)),
-      least_error_(0.5 * options.accuracy * smaller_area_ * kShareOfTrifle / static_cast<double>(options.budget)),
+      times_(&from == &to && is_symmetric(to, options) ? 2.0 : 1.0),
+      least_error_(0.5 * options.accuracy * smaller_area_ / times_ * kShareOfTrifle /
+                   static_cast<double>(options.budget)),
       narrowest_(widened(0.5 * from.enclosed_area, 0.5 * magnitude(from.enclosed_area))) {
   look_at_pairs(scene, seen, memory);
   narrow();
@@ -137,7 +139,7 @@ void Refinement::look_at_pairs(const ExactScene& scene, const SeenParts& seen, P
   }
   const std::vector<PairEnd> sources = ends_of(scene.scene, to_);
   for (std::size_t r = 0; r < receivers.size(); ++r) {
-    for (std::size_t s = 0; s < sources.size(); ++s) {
+    for (std::size_t s = times_ > 1.0 ? r + 1 : 0; s < sources.size(); ++s) {
       const bool may_see = from_.seen.sees(seen, from_.parts, r, to_.parts[s]) &&
                            to_.seen.sees(seen, to_.parts, s, from_.parts[r]) && !are_separated(seen, from_, r, to_, s);
       if (may_see && !add_pair(choice.choose(occluders(r), receivers[r], sources[s]))) return;
@@ -177,7 +179,7 @@ Pair::Budget Refinement::budget_left() const {
 
 double Refinement::accuracy_of_stage() const { return std::ldexp(1.0, kFirstStage + kStep * static_cast<int>(stage_)); }
 
-double Refinement::target_of_stage() const { return 0.5 * accuracy_of_stage() * smaller_area_; }
+double Refinement::target_of_stage() const { return 0.5 * accuracy_of_stage() * smaller_area_ / times_; }
 
 Pair::Limits Refinement::limits() const {
   const double target = target_of_stage();
@@ -286,7 +288,7 @@ void Refinement::narrow() {
   errors_ = {};
   for (const std::vector<Waiting>* shares : {&waiting_, &settled_}) {
     for (const Waiting& w : *shares) {
-      sum = sum + kernel::Disc{w.share.integral, w.share.error};
+      sum = sum + times_ * kernel::Disc{w.share.integral, w.share.error};
       (shares == &waiting_ ? errors_.waiting : settled_errors(w.share)) += w.share.error;
     }
   }
@@ -308,20 +310,20 @@ double Refinement::estimate() const {
       sum += w.urgency < least_urgency() ? w.share.integral : pairs_[w.pair]->estimate(w.share);
     }
   }
-  return sum;
+  return times_ * sum;
 }
 
 Refinement::Apart Refinement::apart() const {
   if (gave_up_) return {.unknown = {}, .known = narrowest_};
   std::vector<const Waiting*> unknown;
-  Apart result;
+  Apart result{.unknown = {}, .known = {}, .times = times_};
   for (const std::vector<Waiting>* shares : {&waiting_, &settled_}) {
     for (const Waiting& w : *shares) {
       const bool matters = w.share.error > kShareOfUnknown * errors_.sum();
       if (matters && suits_points(w) && area(w.share.cell) > 0.0) {
         unknown.push_back(&w);
       } else {
-        result.known = result.known + kernel::Disc{w.share.integral, w.share.error};
+        result.known = result.known + times_ * kernel::Disc{w.share.integral, w.share.error};
       }
     }
   }

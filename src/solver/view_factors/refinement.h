@@ -2,10 +2,10 @@
 //
 // A share is a cell with its part of the integral and an error (pair.h).
 //
-// 1. Cut one part of each pair of parts that may see each other into a few cells, and integrate over each.
+// 1. Cut one part of each pair of parts that may see each other into a few cells, and integrate over each. In a
+//    patch that is to see itself, each pair is there once and counts twice: A_i F_ij = A_j F_ji for parts as well.
 // 2. Keep the shares that can be improved in a heap, that of the largest error on top. Once points may be cheaper,
-// those
-//    that points can tell more of count less.
+//    those that points can tell more of count less.
 // 3. Improve the top one, by a better rule or by its two halves, until the sum of all errors is small enough, the
 //    budget is used up, or no share can be improved.
 //
@@ -57,6 +57,7 @@ class Refinement {
   struct Apart {
     std::vector<Unknown> unknown;
     kernel::Disc known;
+    double times = 1.0;  // that each unknown share counts in the integral
   };
   [[nodiscard]] Apart apart() const;
   [[nodiscard]] bool is_zero() const { return waiting_.empty() && settled_.empty() && !gave_up_; }
@@ -80,7 +81,7 @@ class Refinement {
     return a.urgency != b.urgency ? a.urgency < b.urgency : a.number > b.number;
   }
 
-  // Sums over all shares.
+  // Sums over all shares, each once.
   struct Errors {
     double waiting = 0.0;  // of shares in the heap
     double stuck = 0.0;    // of those that a later stage may improve
@@ -122,6 +123,7 @@ class Refinement {
   ViewFactorOptions options_;
   std::uint64_t pause_;                       // the effort at the next one
   double smaller_area_;                       // of the two patches (counted_area)
+  double times_;                              // that each pair of parts counts
   double least_error_;                        // shares of less need not be improved
   std::vector<std::unique_ptr<Pair>> pairs_;  // null: sees nothing
   std::vector<Waiting> waiting_;              // a heap

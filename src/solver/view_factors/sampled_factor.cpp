@@ -274,8 +274,8 @@ class SampledCells::Round {
  public:
   Round(const ExactScene& scene, const Refinement::Apart& apart, std::size_t before, std::size_t first)
       : function_(scene, apart.unknown),
-        unknown_(weighted_area_of(function_.parts(), scene.units)),
-        rest_(apart.known + function_.least()),
+        unknown_(apart.times * weighted_area_of(function_.parts(), scene.units)),
+        rest_(apart.known + apart.times * function_.least()),
         analyses_(function_, scene.units, kRiskOfCells, before, std::max(first, kPointsOfFirstAnalysis)) {}
 
   [[nodiscard]] InterimAnalyses& analyses() { return analyses_; }
@@ -314,7 +314,7 @@ double SampledCells::next_radius() const {
 
 double SampledCells::fewest_points(const Refinement::Apart& apart) const {
   double range = 0.0;
-  for (const Refinement::Unknown& cell : apart.unknown) range += 2.0 * cell.share->error;
+  for (const Refinement::Unknown& cell : apart.unknown) range += 2.0 * apart.times * cell.share->error;
   const double wanted = next_radius(), left = wanted - apart.known.radius;
   return range > 0.0 && left > kLeastLeft * wanted ? points_for(range, 2.0 * left, kRiskOfCells) : HUGE_VAL;
 }
