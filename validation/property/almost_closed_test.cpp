@@ -11,11 +11,13 @@
 
 #include "exactff/exact.h"
 #include "exactff/receiver.h"
+#include "exactff/view.h"
 #include "exactff/view_factors.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
 #include "property/closed_rooms.h"
 #include "support/random_scenes.h"
+#include "view_factors/pairs.h"
 
 namespace exactff::validation {
 namespace {
@@ -159,6 +161,53 @@ TEST(AlmostClosedRooms, HoldMeansOfPoints) {
     }
   }
   RecordProperty("largest_deviation_over_tolerance", std::to_string(largest));
+}
+
+// Judged by what points see. Nothing is proved of rooms without a ceiling, nor of the ground around a box.
+TEST(AlmostClosedRooms, LetOutNoMoreThanIsProved) {
+  constexpr std::size_t kPoints = 64;
+  std::size_t proved = 0, open = 0;
+  for (std::uint64_t s = 0; s < scaled_count(16); ++s) {
+    Random random(seed_of(s));
+    PlainScene room = random_room(random);
+    const double moved = std::pow(10.0, -12.0 + 10.0 * random.unit());
+    const bool is_closed = s % 4 < 2;
+    if (s % 4 == 1) add_thing(room, box({0.25, 0.25, 0.0}, {0.75, 0.5, 0.5}));
+    if (s % 4 == 2)
+      room.patches.erase(room.patches.begin() + static_cast<std::ptrdiff_t>(random.below(room.patches.size())));
+    if (s % 4 == 3) {
+      room = {};
+      room.add_ring(room.patch("ground"), {{-1, -1, 0}, {2, -1, 0}, {2, 2, 0}, {-1, 2, 0}});
+      add_thing(room, box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}));
+    }
+    const Scene scene = generate::build(with_moved_corners(room, moved, seed_of(s)));
+    std::vector<Selection> rows;
+    for (const generate::PlainPatch& patch : room.patches) rows.push_back(scene.select(patch.name));
+    const view_factors::Pairs pairs(scene, rows, rows, {});
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      const std::vector<FaceId> faces = scene.faces_of(rows[row]);
+      double sum = 0.0, squares = 0.0;
+      for (const Receiver& receiver : sample_receivers(scene, faces, kPoints, seed_of(s))) {
+        const double share = view(scene, receiver).open.value;
+        sum += share;
+        squares += share * share;
+      }
+      const double n = static_cast<double>(kPoints), mean = sum / n;
+      const double noise = 5.0 * std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1.0));
+      const double most = pairs.open_at_most(row);
+      const std::string where =
+          "seed " + std::to_string(seed_of(s)) + ' ' + scene.name_of(rows[row]) + ", moved by " + std::to_string(moved);
+      EXPECT_LE(mean, most + (most < 0.1 ? 1e-12 : noise)) << where;
+      const bool is_of_room = is_closed && scene.name_of(rows[row]).find("thing") == std::string::npos;
+      if (is_of_room) {
+        EXPECT_LE(most, 64.0 * moved * perimeter_of_all(room) / pairs.area_from(row) + 1e-9) << where;
+      }
+      proved += most < 0.1 ? 1U : 0U;
+      open += most > 0.9 ? 1U : 0U;
+    }
+  }
+  EXPECT_GE(proved, 20U);
+  EXPECT_GE(open, 20U);
 }
 
 }  // namespace

@@ -95,6 +95,14 @@ ViewFactor OpenFactors::of_row(std::size_t row) const {
       return factor_of(*to_windows_, row * made_.windows.size() + w);
     }
   }
+  const double most = pairs_.open_at_most(row);
+  if (most <= options_.accuracy) return {.upper = most, .claim = Claim::kCertified};
+  ViewFactor open = computed(row);
+  for (double* bound : {&open.upper, &open.lower, &open.value}) *bound = std::min(*bound, most);
+  return open;
+}
+
+ViewFactor OpenFactors::computed(std::size_t row) const {
   if (scene_.pieces().size() <= kMostPieces && sides().unhidden(row) < kLittle) {
     const ViewFactor rest = rest_of(sides().of_row(row), pairs_.exposed_share(row));
     if (rest.accurate) return rest;

@@ -1,6 +1,7 @@
 // For each row, what is open: by the cheapest of a few ways that hold.
 //
 // - Closed surfaces around all that the row sees: nothing.
+// - Surfaces around it that are almost closed: no more than their strips let through, if that is within the accuracy.
 // - Within a surface with a convex hole and nothing beyond: the factor to the hole (SceneWithSky).
 // - If little is there to be seen: the rest that the faces leave of 1, from either side.
 // - Otherwise, or if the rest is not accurate: the factor to the sky or the rest, the one that is narrower.
@@ -34,6 +35,8 @@ class OpenFactors {
  private:
   class Sides;
   [[nodiscard]] const Sides& sides() const;
+  // By the last two ways.
+  [[nodiscard]] ViewFactor computed(std::size_t row) const;
 
   const Scene& scene_;
   std::vector<Selection> from_;

@@ -367,6 +367,12 @@ bool Pairs::is_enclosed(std::size_t row) const {
   });
 }
 
+double Pairs::open_at_most(std::size_t row) const {
+  const PreparedPatch& patch = *patches_->rows[row];
+  const double open = view_factors::open_at_most(patches_->scene, patches_->seen.almost_closed(), patch.parts);
+  return std::min(1.0, upper_end(kernel::Disc{open, 0.0} / patch.enclosed_area));
+}
+
 bool Pairs::is_within(std::size_t row, std::size_t surface) const {
   const PreparedPatch& patch = *patches_->rows[row];
   return std::ranges::all_of(patch.seen.windings(patches_->seen, patch.parts),

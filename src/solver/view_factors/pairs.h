@@ -35,6 +35,8 @@ class Pairs {
   [[nodiscard]] kernel::Disc exposed_share(std::size_t row) const;
   // Whether closed surfaces stand around all that the row's patch sees (seen_parts.h), if that can be proved.
   [[nodiscard]] bool is_enclosed(std::size_t row) const;
+  // At most this is open to the row's patch, as is proved by surfaces that are almost closed.
+  [[nodiscard]] double open_at_most(std::size_t row) const;
   // Whether all that the row's patch sees lies within this one of the scene's closed surfaces, by edges that are cut at
   // T-junctions, or beyond its holes, if that can be proved.
   [[nodiscard]] bool is_within(std::size_t row, std::size_t surface) const;

@@ -86,15 +86,25 @@ class Ray {
   Point to_;
 };
 
+using Strips = std::vector<ExactPiece>;
+
+// Of a surface and its strips, if it has any.
+template <class Test>
+bool all_of(const ExactScene& scene, const ExactSurface& surface, const Strips& strips, const Test& test) {
+  return std::ranges::all_of(surface.pieces, [&](std::uint32_t piece) { return test(scene.pieces[piece]); }) &&
+         std::ranges::all_of(strips, test);
+}
+
 // On the ray, near its start.
-std::optional<int> winding_number(const ExactScene& scene, const ExactSurface& surface, const Ray& ray) {
+std::optional<int> winding_number(const ExactScene& scene, const ExactSurface& surface, const Strips& strips,
+                                  const Ray& ray) {
   int sum = 0;
-  for (const std::uint32_t piece : surface.pieces) {
-    const std::optional<int> crossing = ray.crossing(scene, scene.pieces[piece]);
-    if (!crossing) return std::nullopt;
-    sum += *crossing;
-  }
-  return sum;
+  const bool is_known = all_of(scene, surface, strips, [&](const ExactPiece& piece) {
+    const std::optional<int> crossing = ray.crossing(scene, piece);
+    sum += crossing.value_or(0);
+    return crossing.has_value();
+  });
+  return is_known ? std::optional(sum) : std::nullopt;
 }
 
 // The centre of three corners.
@@ -143,19 +153,18 @@ class Interior {
   }
 
   // Just above all of it, if that is known.
-  [[nodiscard]] std::optional<int> winding(const ExactSurface& surface) const {
+  [[nodiscard]] std::optional<int> winding(const ExactSurface& surface, const Strips& strips = {}) const {
     if (surface.rim && !lies_before(*surface.rim)) return std::nullopt;
     if (surface.box.is_apart_from(box_)) return 0;
-    const bool is_off =
-        std::ranges::all_of(surface.pieces, [&](std::uint32_t piece) { return keeps_off(scene_.pieces[piece]); });
-    if (!is_off) return std::nullopt;
+    const auto is_off = [&](const ExactPiece& piece) { return keeps_off(piece); };
+    if (!all_of(scene_, surface, strips, is_off)) return std::nullopt;
     for (std::array<int, 3> direction : kDirections) {
       for (const int way : {1, -1}) {
         for (int& component : direction) component *= way;
         const int upwards = sign_of_dot(plane_, direction);
         if (upwards == 0 || (surface.rim && sign_of_dot(*surface.rim, direction) <= 0)) continue;
         const Ray ray(centre_, direction, upwards < 0);
-        if (const std::optional<int> w = winding_number(scene_, surface, ray)) return w;
+        if (const std::optional<int> w = winding_number(scene_, surface, strips, ray)) return w;
       }
     }
     return std::nullopt;
@@ -218,6 +227,64 @@ bool Enclosures::are_around(const Windings& windings) const {
   return false;
 }
 
+// --- Almost closed surfaces ---
+
+namespace {
+
+constexpr double kSpace = 4.0;                // times what was moved, from the part's sides
+constexpr double kLeastSpace = 0x1p-40;       // in the unit of Point::at
+constexpr double kOverRounded = 1 + 0x1p-30;  // more than those of areas and of their sums
+
+// The part towards one of its points: by 2^-60 times an integer of its distance, at least as far from each side as is
+// asked for. With how much of the area is left out, or more; empty if this is much.
+std::optional<std::pair<Part, double>> inner_part(const Part& part, double space, const Units& units) {
+  constexpr int kBits = 60;
+  constexpr double kMost = 0.25;
+  const Point centre = inner_point(part, units);
+  double nearest = Box::kInfinity;
+  for (std::size_t i = 0; i < part.corners.size(); ++i) {
+    const Vec3 &a = part.corners[i].at, &b = part.corners[(i + 1) % part.corners.size()].at;
+    nearest = std::min(nearest, distance_to_segment(centre.at, a, b));
+  }
+  const double share = space / nearest;
+  if (!(share < kMost)) return std::nullopt;
+  const Integer whole = Integer(1) << kBits;
+  const Integer towards(std::ceil(std::ldexp(share, kBits)));
+  Part inner = part;
+  for (Point& corner : inner.corners) {
+    Homogeneous at;
+    const Integer of_corner = centre.exact[3] * (whole - towards), of_centre = corner.exact[3] * towards;
+    for (std::size_t k = 0; k < 3; ++k) at[k] = corner.exact[k] * of_corner + centre.exact[k] * of_centre;
+    at[3] = corner.exact[3] * centre.exact[3] * whole;
+    corner = make_point(std::move(at), units);
+  }
+  return std::pair(std::move(inner), 2.0 * share * area(positions_of(part.corners)));
+}
+
+}  // namespace
+
+double open_at_most(const ExactScene& scene, const std::vector<AlmostClosedSurface>& surfaces,
+                    std::span<const Part> parts) {
+  std::vector<bool> is_around(surfaces.size());
+  double sum = 0.0;
+  for (const Part& part : parts) {
+    kernel::poll();
+    double open = area(positions_of(part.corners));
+    for (std::size_t s = 0; s < surfaces.size(); ++s) {
+      const AlmostClosedSurface& closed = surfaces[s];
+      if (closed.surface.box.is_apart_from(box_of(part.corners))) continue;
+      const auto inner = inner_part(part, kSpace * closed.moved + kLeastSpace, scene.units);
+      if (!inner || Interior(scene, inner->first).winding(closed.surface, closed.strips).value_or(0) == 0) continue;
+      is_around[s] = true;
+      open = inner->second;
+      break;
+    }
+    sum += open;
+  }
+  for (std::size_t s = 0; s < surfaces.size(); ++s) sum += is_around[s] ? surfaces[s].area_of_strips : 0.0;
+  return sum * kOverRounded;
+}
+
 bool are_separated(const Windings& one, const Windings& other) {
   for (std::size_t i = 0; i < one.size(); ++i) {
     if (one[i] && other[i] && *one[i] != *other[i]) return true;
@@ -277,6 +344,11 @@ const std::vector<Windings>& SeenParts::OfPatch::windings(const SeenParts& scene
 const Enclosures& SeenParts::enclosures() const {
   std::call_once(enclosures_once_, [&] { enclosures_.emplace(scene_); });
   return *enclosures_;
+}
+
+const std::vector<AlmostClosedSurface>& SeenParts::almost_closed() const {
+  std::call_once(almost_closed_once_, [&] { almost_closed_ = almost_closed_surfaces(scene_); });
+  return almost_closed_;
 }
 
 // Corners of a part may be rounded; those of its face, or of its joined panel, are not.

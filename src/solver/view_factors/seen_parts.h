@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "view_factors/almost_closed.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/sight.h"
 #include "visibility/walls.h"
@@ -56,6 +57,10 @@ class Enclosures {
   std::vector<ExactSurface> surfaces_;  // with edges cut at T-junctions
 };
 
+// At most this is open: the integral over the parts, in squares of the unit of Point::at (almost_closed.h).
+[[nodiscard]] double open_at_most(const ExactScene& scene, const std::vector<AlmostClosedSurface>& surfaces,
+                                  std::span<const Part> parts);
+
 // Whether the parts are proved to see nothing of each other. False does not mean that they see something.
 [[nodiscard]] bool are_separated(const Windings& one, const Windings& other);
 
@@ -99,14 +104,16 @@ class SeenParts {
 
   [[nodiscard]] SeenPieces seen_from(const Part& part) const;
   [[nodiscard]] const Enclosures& enclosures() const;
+  [[nodiscard]] const std::vector<AlmostClosedSurface>& almost_closed() const;
 
  private:
   [[nodiscard]] exactff::Box region_of(const Part& part) const;
 
   const ExactScene& scene_;
   std::vector<visibility::Wall> walls_;
-  mutable std::once_flag enclosures_once_;
+  mutable std::once_flag enclosures_once_, almost_closed_once_;
   mutable std::optional<Enclosures> enclosures_;
+  mutable std::vector<AlmostClosedSurface> almost_closed_;
 };
 
 }  // namespace exactff::view_factors
