@@ -118,6 +118,12 @@ double area(const std::vector<Vec3>& ring) {
   return 0.5 * length(sum);
 }
 
+double error_of_area(const std::vector<Vec3>& ring) {
+  double perimeter = 0.0;
+  for (std::size_t i = 0; i < ring.size(); ++i) perimeter += kernel::distance(ring[i], ring[(i + 1) % ring.size()]);
+  return perimeter * 0x1p-50;
+}
+
 double balance(const Cell& cell, const Plane& plane) {
   return smaller_share(cell, [&](const Vec3& p) { return value_at(plane, p); });
 }

@@ -62,6 +62,9 @@ using kernel::length;
 [[nodiscard]] std::vector<Vec3> positions_of(const std::vector<Point>& points);
 // Of a planar polygon; in squares of the unit of Point::at.
 [[nodiscard]] double area(const std::vector<Vec3>& ring);
+// Of the area, or of the sum of the weights of a rule. A corner's coordinates err by 2^-53 at most, and an area by its
+// perimeter times that, before roundings of the arithmetic, which are smaller.
+[[nodiscard]] double error_of_area(const std::vector<Vec3>& ring);
 [[nodiscard]] inline double area(const Cell& cell) { return area(positions_of(cell.corners)); }
 // The smaller of the two parts' areas, over the whole.
 [[nodiscard]] double balance(const Cell& cell, const Plane& plane);

@@ -37,8 +37,7 @@ std::vector<Vec3> part_in_front(std::span<const Vec3> ring, const Plane& plane) 
 }  // namespace
 
 FactorBound::FactorBound(const Sight& sight) {
-  if (!sight.is_of_open())
-    *this = {sight.points.positions(sight.source), sight.points.plane_of(sight.source), sight.receiver};
+  if (!sight.is_of_open()) *this = {sight.points.positions(sight.source), sight.source_plane, sight.receiver};
 }
 
 FactorBound::FactorBound(std::span<const Vec3> source, const Plane& source_plane, const Plane& receiver)
@@ -231,9 +230,9 @@ constexpr std::size_t kMostSources = 256;  // of more parts, F is only known to 
 constexpr double kSum = 1.0 + 0x1p-40;     // more than the roundings of a sum
 
 // Otherwise no point of either sees the other.
-bool reach_before_each_other(const Part& one, const Part& other, const Units& units) {
+bool reach_before_each_other(const ExactScene& scene, const Part& one, const Part& other) {
   const auto reaches_before = [&](const Part& part, const Part& of_plane) {
-    const Plane plane = plane_of(of_plane, units);
+    const Plane& plane = plane_of(scene, of_plane);
     return std::ranges::any_of(part.corners, [&](const Point& corner) { return side_of(plane, corner) > 0; });
   };
   return reaches_before(one, other) && reaches_before(other, one);
@@ -267,12 +266,12 @@ PatchBounds::OfPart& PatchBounds::of(std::size_t part) {
   if (of) return *of;
   of.emplace();
   const Part& receiver = from_.parts[part];
-  const Plane plane = plane_of(receiver, scene_.units);
+  const Plane& plane = plane_of(scene_, receiver);
   if (to_.parts.size() <= kMostSources) {
     of->knows_unhidden = true;
     for (const Part& source : to_.parts) {
-      if (!reach_before_each_other(receiver, source, scene_.units)) continue;
-      of->unhidden.emplace_back(positions_of(source.corners), plane_of(source, scene_.units), plane);
+      if (!reach_before_each_other(scene_, receiver, source)) continue;
+      of->unhidden.emplace_back(positions_of(source.corners), plane_of(scene_, source), plane);
     }
   }
   return *of;

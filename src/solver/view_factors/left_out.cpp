@@ -293,7 +293,7 @@ bool Omissions::are_possible() {
 
 void Omissions::find_bounds() {
   if (sight_.is_of_open() || sight_.occluders.empty()) return;
-  const Plane source_plane = sight_.points.plane_of(sight_.source);
+  const Plane& source_plane = sight_.source_plane;
   if (!has_near_misses(source_plane)) return;
   std::vector<Vec3> directions;
   const std::size_t most_directions = sight_.occluders.size() <= kMostToCover ? kMostDirections : 3;

@@ -55,14 +55,6 @@ Vec3 near_point_inside(const Cell& cell) {
   return {middle_of(a.x, b.x, c.x), middle_of(a.y, b.y, c.y), middle_of(a.z, b.z, c.z)};
 }
 
-// Of the area, or of the sum of the weights of a rule. A corner's coordinates err by 2^-53 at most, and an area by its
-// perimeter times that, before roundings of the arithmetic, which are smaller.
-double error_of_area(const std::vector<Vec3>& ring) {
-  double perimeter = 0.0;
-  for (std::size_t i = 0; i < ring.size(); ++i) perimeter += distance(ring[i], ring[(i + 1) % ring.size()]);
-  return perimeter * 0x1p-50;
-}
-
 double radius_about(const Cell& cell, const Vec3& centre) {
   double radius = 0.0;
   for (const Point& corner : cell.corners) radius = std::max(radius, distance(corner.at, centre));
@@ -125,8 +117,7 @@ Pair::Pair(const Scene& scene, Sight sight, FaceId receiver_face, std::shared_pt
       omissions_(sight_, view_) {
   if (!sight_.is_of_open()) {
     if (sight_.near_horizon) {
-      strip_.emplace(sight_, sight_.source, *sight_.near_horizon, sight_.points.plane_of(sight_.source),
-                     StripBound::Sides::kFront);
+      strip_.emplace(sight_, sight_.source, *sight_.near_horizon, sight_.source_plane, StripBound::Sides::kFront);
     }
     return;
   }

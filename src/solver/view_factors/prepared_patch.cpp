@@ -203,8 +203,12 @@ std::array<kernel::Rational, 3> exact_difference(const Point& a, const Point& b)
   return result;
 }
 
-// By an exact square, whose root is enclosed.
+// By an exact square, whose root is enclosed. Of what is cut from a part, of which there is much, in doubles.
 kernel::Disc enclosed_area(const Part& part, const Units& units) {
+  if (part.is_cut) {
+    const std::vector<Vec3> ring = positions_of(part.corners);
+    return {area(ring), 2.0 * error_of_area(ring)};
+  }
   constexpr long kBits = 128;
   std::array<kernel::Rational, 3> sum;
   for (std::size_t i = 2; i < part.corners.size(); ++i) {

@@ -252,9 +252,10 @@ class SampledCells::FactorOfCells : public SampledFunction {
     std::unique_ptr<OfPair>& of = pairs_[&pair];
     if (of == nullptr) of = std::make_unique<OfPair>(pair);
     kernel::poll();
-    const double size = area(share.cell), mean = share.integral / size, bound = share.bound;
+    const std::vector<Vec3> ring = positions_of(share.cell.corners);
+    const double size = area(ring), mean = share.integral / size, bound = share.bound;
     cells_.push_back({of.get(), share.near.get(), mean, bound});
-    const Disc exact_size = enclosed_area(share.cell, pair.sight().receiver);
+    const Disc exact_size{size, 2.0 * error_of_area(ring)};
     const Disc near =
         share.near != nullptr ? Disc{share.integral, std::max(0.0, share.error - bound * size)} : mean * exact_size;
     const double rounded = std::min(bound, kRoundedPoints) * 2.0;  // of a value, and of what it is compared with

@@ -19,9 +19,9 @@ class Maker {
     Points& points = sight_.points;
     const Ring receiver = add(receiver_part), source = add(source_part);
     corners_of_parts_ = static_cast<PointId>(points.point_count());
-    sight_.receiver = points.plane_of(receiver);
-    source_plane_ = points.plane_of(source);
-    const Ring seeing = points.clip(receiver, source_plane_, kBySource);
+    sight_.receiver = plane_of(scene_, receiver_part);
+    sight_.source_plane = plane_of(scene_, source_part);
+    const Ring seeing = points.clip(receiver, sight_.source_plane, kBySource);
     sight_.source = points.clip(source, sight_.receiver, kByReceiver);
     if (seeing.empty() || sight_.source.empty()) return std::nullopt;
     sight_.root = cell_of(points, seeing, sight_.receiver);
@@ -45,7 +45,7 @@ class Maker {
     Points& points = sight_.points;
     const Ring receiver = add(receiver_part);
     corners_of_parts_ = static_cast<PointId>(points.point_count());
-    sight_.receiver = points.plane_of(receiver);
+    sight_.receiver = plane_of(scene_, receiver_part);
     sight_.root = cell_of(points, receiver, sight_.receiver);
     include(receiver, receiver_box_);
     add_occluders();
@@ -104,7 +104,7 @@ class Maker {
                                  [&](std::uint32_t corner) { return side_of(plane, scene_.vertices[corner]) > 0; });
     };
     if (!has_corner_before(sight_.receiver)) return false;
-    return !shaft_ || (separates_pair(piece.plane) && has_corner_before(source_plane_));
+    return !shaft_ || (separates_pair(piece.plane) && has_corner_before(sight_.source_plane));
   }
 
   // Otherwise, almost no segment between the two crosses the plane.
@@ -200,8 +200,9 @@ class Maker {
 
   // In front of the source's plane, or in it and facing away. Planes are primitive, so equal ones face the same side.
   [[nodiscard]] bool stands_on_source(const ExactSurface& surface) const {
-    const Homogeneous towards = surface.turned_inside_out ? opposite(source_plane_.exact) : source_plane_.exact;
-    return lies_before(surface, source_plane_) && std::ranges::none_of(surface.pieces, [&](std::uint32_t piece) {
+    const Homogeneous towards =
+        surface.turned_inside_out ? opposite(sight_.source_plane.exact) : sight_.source_plane.exact;
+    return lies_before(surface, sight_.source_plane) && std::ranges::none_of(surface.pieces, [&](std::uint32_t piece) {
              return scene_.pieces[piece].plane.exact == towards;
            });
   }
@@ -246,14 +247,13 @@ class Maker {
     Points& points = sight_.points;
     const Ring above = points.clip(ring_of(piece), sight_.receiver, kByReceiver);
     if (above.empty()) return;
-    Ring ring = shaft_ ? points.clip(above, source_plane_, kBySource) : above;
+    Ring ring = shaft_ ? points.clip(above, sight_.source_plane, kBySource) : above;
     if (!ring.empty()) sight_.occluders.push_back({std::move(ring), &piece.plane, solid(piece.surface)});
   }
 
   const ExactScene& scene_;
   std::span<const std::uint32_t> pieces_;
   Sight sight_;
-  Plane source_plane_;
   Box receiver_box_, source_box_, between_;
   std::optional<PairShaft> shaft_;  // if there is a source
   PointId corners_of_parts_ = std::numeric_limits<PointId>::max();
@@ -262,6 +262,8 @@ class Maker {
 };
 
 }  // namespace
+
+const Plane& plane_of(const ExactScene& scene, const Part& part) { return scene.panel(part.panel).plane; }
 
 std::vector<FaceId> faces_of(const Scene& scene, const Part& part) {
   const Panels& all = panels(scene);

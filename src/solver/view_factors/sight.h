@@ -64,9 +64,9 @@ struct Sight {
   explicit Sight(const Units& units) : points(units) {}
 
   Points points;
-  Plane receiver;  // positive in front
-  Cell root;       // the part of the receiver in front of the source's plane
-  Ring source;     // the part of the source in front of the receiver's plane, counter-clockwise as seen from there
+  Plane receiver, source_plane;  // positive in front; the second: if there is a source
+  Cell root;                     // the part of the receiver in front of the source's plane
+  Ring source;  // the part of the source in front of the receiver's plane, counter-clockwise as seen from there
   std::optional<NearHorizon> near_horizon;  // of the source
   std::vector<Occluder> occluders;          // the parts in front of both planes
   std::vector<WidenedOccluder> widened;     // of some of them
@@ -93,6 +93,9 @@ struct Part {
   bool is_cut = false;    // a fragment of cut_at_contacts(), or a cell
   double weight = 1.0;    // of its area, in means over several
 };
+
+// Of its panel. Not for parts that were made of no panel, as cells are.
+[[nodiscard]] const Plane& plane_of(const ExactScene& scene, const Part& part);
 
 // The faces that it is a part of: of a joined panel all of its sheet, which lie in its plane.
 [[nodiscard]] std::vector<FaceId> faces_of(const Scene& scene, const Part& part);
