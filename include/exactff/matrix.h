@@ -87,7 +87,7 @@ struct Reciprocity {
 struct Balanced {
   // As in Matrix: row by row, and for each row. Empty if there is no balanced matrix, or if none was found.
   std::vector<double> entries, back, open, buried;
-  double furthest = 0.0;  // largest distance of the exact sum of a row from 1
+  double furthest = 0.0;  // largest distance of the exact sum of a row from 1, rounded up: at most 2^-51
 
   // Why there is none, by the bounds. Rows as indices.
   struct Pair {
@@ -108,13 +108,14 @@ struct Balanced {
 // The matrix nearest to the values in which every entry lies in its interval, and
 //
 // - A_i * F_ij == A_j * F_ji as products of doubles, each rounded once, in every pair (unless they underflow),
-// - the exact sum of the doubles of a row, with back, open and buried, is 1 to within 2^-52, one ulp, unless a row has
-// so
-//   few entries that no doubles with equal products add up to that: then to a few ulps. `furthest` has the largest
-//   distance (math.fsum of a row nearly always gives 1.0).
+// - the exact sum of the doubles of a row, with back, open and buried, is 1 to within 2^-51, two ulps. It is mostly
+//   within one; `furthest` has the largest distance (math.fsum of a row nearly always gives 1.0).
+//
+// If roundings do not allow both, as may happen where two groups of patches see only each other or where intervals are
+// only some 1e-11 of their entries wide, no matrix is found.
 //
 // "Nearest": the sum of squared distances of A_i F_ij over the widths of their intervals is least, up to roundings. An
-// entry whose two intervals overlap only because areas are rounded may miss one by 2^-42 of itself. Depends neither on
+// entry whose two intervals have no two such doubles, since areas are rounded, may miss one by 2^-42 of itself. Depends neither on
 // threads nor on the order of the patches, but on their names, which order the sums. Throws InputError unless rows and
 // columns are the same patches and every row must add up to 1: the message has reasons_against_one().
 [[nodiscard]] Balanced balanced(const Scene& scene, const Matrix& matrix);

@@ -51,7 +51,7 @@ constexpr const char* kMatrixFooter =
     "its wall, both count in full and rows exceed 1: a warning names them, and neither file is written without\n"
     "--force.\n"
     "--balance chooses the nearest matrix within all intervals in which A_i F_ij and A_j F_ji are the same double and\n"
-    "every row adds up to 1, to an ulp (the output says how far). If there is none, a warning names the rows or pairs\n"
+    "every row adds up to 1 within 2^-51 (the output says how far). If there is none, a warning names the rows or pairs\n"
     "that prove it, and the exit code is 1. -o then has the column 'balanced', and the table and all other files have\n"
     "its values.\n"
     "--matrix FILE takes the entries from a file of `exactff matrix SCENE -o FILE`, with all columns that are needed.\n"

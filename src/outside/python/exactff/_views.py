@@ -115,8 +115,8 @@ class ViewFactorMatrix:
         """The nearest matrix in which every value, also of ``back``, ``open`` and ``buried``, lies in its interval, and
 
         - ``areas[i] * value[i, j] == areas[j] * value[j, i]`` in every bit,
-        - the exact sum of a row, with ``back``, ``open`` and ``buried``, is 1 to within 2^-52, one ulp, or to a few
-          ulps in rows of two or three entries; ``math.fsum`` nearly always gives 1.0.
+        - the exact sum of a row, with ``back``, ``open`` and ``buried``, is 1 to within 2^-51, two ulps, and mostly
+          within one; ``math.fsum`` nearly always gives 1.0.
 
         Values depend neither on threads nor on the order of the patches, but on their names. Needs the same patches as rows
         and columns, with `backs` and `sky`. Raises InputError where rows need not add up to 1, with
