@@ -6,6 +6,7 @@
 // plane. Each of the four is computed by itself.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "exactff/jobs.h"
@@ -87,7 +89,7 @@ struct Reciprocity {
 struct Balanced {
   // As in Matrix: row by row, and for each row. Empty if there is no balanced matrix, or if none was found.
   std::vector<double> entries, back, open, buried;
-  double furthest = 0.0;  // largest distance of the exact sum of a row from 1
+  double furthest = 0.0;  // largest distance of the exact sum of a row from 1, rounded up: at most 2^-51
 
   // Why there is none, by the bounds. Rows as indices.
   struct Pair {
@@ -108,15 +110,16 @@ struct Balanced {
 // The matrix nearest to the values in which every entry lies in its interval, and
 //
 // - A_i * F_ij == A_j * F_ji as products of doubles, each rounded once, in every pair (unless they underflow),
-// - the exact sum of the doubles of a row, with back, open and buried, is 1 to within 2^-52, one ulp, unless a row has
-// so
-//   few entries that no doubles with equal products add up to that: then to a few ulps. `furthest` has the largest
-//   distance (math.fsum of a row nearly always gives 1.0).
+// - the exact sum of the doubles of a row, with back, open and buried, is 1 to within 2^-51, two ulps. It is mostly
+//   within one; `furthest` has the largest distance (math.fsum of a row nearly always gives 1.0).
+//
+// If roundings do not allow both, as may happen where two groups of patches see only each other or where intervals are
+// only some 1e-11 of their entries wide, no matrix is found.
 //
 // "Nearest": the sum of squared distances of A_i F_ij over the widths of their intervals is least, up to roundings. An
-// entry whose two intervals overlap only because areas are rounded may miss one by 2^-42 of itself. Depends neither on
-// threads nor on the order of the patches, but on their names, which order the sums. Throws InputError unless rows and
-// columns are the same patches and every row must add up to 1: the message has reasons_against_one().
+// entry whose two intervals have no two such doubles, since areas are rounded, may miss one by 2^-42 of itself. Depends
+// neither on threads nor on the order of the patches, but on their names, which order the sums. Throws InputError
+// unless rows and columns are the same patches and every row must add up to 1: the message has reasons_against_one().
 [[nodiscard]] Balanced balanced(const Scene& scene, const Matrix& matrix);
 
 // The matrix with these values in place of its own. Requires balanced.is_found().
@@ -182,32 +185,54 @@ jobs::Summary write(const Request& request, const std::filesystem::path& file,
 // `radius`, in the order of `data`: data - radius and data + radius are bounds. `claim` and `way` likewise. `from` and
 // `to` are names; `area_from`, `area_to`; if computed, `back`, `back_radius`, `open`, `open_radius` for each row.
 // Proved zeros are left out. The file appears complete or not at all. Throws InputError if it cannot be written.
-void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::path& path);
+// With a balanced matrix, `data`, `back`, `open` and `buried` have its values, and `factor` those of the matrix.
+void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::path& path,
+               const Balanced* balanced = nullptr);
 
-// The output of View3D in its text format (0): areas, rows, emittances (1 - Kd) without names. It holds six decimals.
-// Throws InputError unless rows and columns are the same patches.
-[[nodiscard]] std::string view3d_text(const Scene& scene, const Matrix& matrix);
+// --- Files of other programs ---
 
-// Files of programs that know surfaces by number: patches are numbered in the order of the rows, from 0 or 1, and names
-// get lost, except where the format has comments. Values have every digit. Throw InputError unless rows and columns are
-// the same patches.
+// A square of values between patches, with all that such files hold.
+struct Square {
+  const Scene* scene = nullptr;
+  std::vector<Selection> patches = {};
+  std::vector<double> areas = {}, values = {};                              // row by row
+  std::vector<std::pair<std::string_view, std::vector<double>>> rest = {};  // (back) and (open), of conductors alone
+  std::string zone = {};                                                    // of EnergyPlus
 
-// The files F and globalFaceFaces of OpenFOAM's viewFactorsGen, for cases whose agglomeration makes one coarse face of
-// each patch, in this order.
-struct OpenFoamFiles {
-  std::string factors, faces;
+  [[nodiscard]] std::size_t size() const { return patches.size(); }
+  [[nodiscard]] double at(std::size_t i, std::size_t j) const { return values[i * size() + j]; }
 };
-[[nodiscard]] OpenFoamFiles openfoam_files(const Scene& scene, const Matrix& matrix);
-// The file that *VIEWFACTOR, READ of CalculiX 2.20 reads, in the order of its faces.
-[[nodiscard]] std::string calculix_text(const Scene& scene, const Matrix& matrix);
-// CSV as MOOSE's ViewFactorVectorPostprocessor writes it: subdomain_id,vf_to_1,vf_to_2,...
-[[nodiscard]] std::string moose_text(const Scene& scene, const Matrix& matrix);
-// What vf_read_view_factors of Nek5000 and NekRS reads: for each wall, "iw ieg ifc n", then n times "jw jeg jfc F".
-// A patch named "12:3" is face 3 of element 12; with any other name in the scene, all are face 1 of their own number.
-[[nodiscard]] std::string nek_text(const Scene& scene, const Matrix& matrix);
+using Texts = std::vector<std::string>;  // of the file, and of those beside it
 
-// An object ZoneProperty:UserViewFactors:bySurfaceName for the input file of EnergyPlus. Throws InputError unless rows
-// and columns are the same patches, or for a name that such a file cannot hold.
-[[nodiscard]] std::string energyplus_text(const Scene& scene, const Matrix& matrix, const std::string& zone);
+// Patches keep their order. Values have every digit, but for View3D.
+//
+// view3d      its output in text (0): areas, rows, emittances (1 - Kd)
+// energyplus  an object ZoneProperty:UserViewFactors:bySurfaceName. InputError for a name that it cannot hold
+// openfoam    F, globalFaceFaces, finalAgglom and mapDist, of one process, as the radiation model viewFactor reads them
+//             from `constant`. A patch of the scene is a patch of the mesh, with one coarse face, and has as many faces
+//             as there; patches NAME:1, NAME:2, ... in succession are the coarse faces of one patch
+// calculix    *VIEWFACTOR, READ of CalculiX 2.20, in the order of its faces
+// moose       CSV of ViewFactorVectorPostprocessor: subdomain_id,vf_to_1,vf_to_2,...
+// nek         vf_read_view_factors of Nek5000 and NekRS: for each wall, "iw ieg ifc n", then n times "jw jeg jfc F". A
+//             patch named "12:3" is face 3 of element 12; with any other name, all are face 1 of their own number
+// esatan      lines GR(1, 2) = 0.25; of a $CONDUCTORS block, of radiosity::Exchange. Zeros are left out
+struct ProgramFormat {
+  std::string_view name;       // the flag is --NAME
+  std::string_view program;    // "OpenFOAM"
+  std::string_view extension;  // by which Python knows it; empty: by its name alone
+  std::string_view help, lost;
+  bool of_conductors = false;
+  Texts (*texts)(const Square& square) = nullptr;
+};
+[[nodiscard]] std::span<const ProgramFormat> program_formats();
+inline constexpr std::array<std::string_view, 3> kOpenFoamFiles{"globalFaceFaces", "finalAgglom", "mapDist"};
+
+// What a file of view factors is written from. Throws InputError unless rows and columns are the same patches.
+[[nodiscard]] Square square_of(const ProgramFormat& format, const Scene& scene, const Matrix& matrix,
+                               std::string zone = "Zone 1");
+// The file in `path`, and those beside it.
+[[nodiscard]] std::vector<std::pair<std::filesystem::path, std::string>> files_of(const ProgramFormat& format,
+                                                                                  const Square& square,
+                                                                                  const std::filesystem::path& path);
 
 }  // namespace exactff::matrix

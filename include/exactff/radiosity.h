@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -167,10 +168,10 @@ struct Exchange {
 // with one channel, it is called `all`. What is infinite or not known is empty.
 [[nodiscard]] table::Table table_of(const Scene& scene, const Exchange& exchange, const ViewFactorOptions& options);
 
-// Conductors as lines GR(1, 2) = 0.25; of ESATAN's $CONDUCTORS block, once for each pair, without those that are 0.
-// Nodes are numbers from 1; after the patches come one for backs and one for what is open, if the matrix has them.
-// Comments name the nodes. Throws InputError unless the three channels are alike and have values.
-[[nodiscard]] std::string esatan_text(const Scene& scene, const Exchange& exchange);
+// What a file of conductors is written from (matrix::ProgramFormat), with a node for backs and one for what is open, if
+// the matrix has them. Throws InputError unless the three channels are alike and have values.
+[[nodiscard]] matrix::Square square_of(const matrix::ProgramFormat& format, const Scene& scene,
+                                       const Exchange& exchange);
 
 // --- Temperatures ---
 
@@ -184,9 +185,15 @@ struct ThermalConditions {
   std::vector<Known> patches;     // of patches_of(scene), one of the two each
   double back = 0.0, open = 0.0;  // temperatures, in K, of the black backs of faces and of what is open
 };
-// From a CSV file with the columns patch, T, Q, in any order, one of T and Q in each row. A name means what flags mean
-// by it; the heat of several patches is shared by their areas. (back) and (open) may have a T, which is else 0. Throws
-// one InputError with file:line for every problem, also for patches without a row.
+// A name means what flags mean by it; the heat of several patches is shared by their areas. (back) and (open) may have
+// a temperature, which is else 0. Throws one InputError for every problem, also for patches without a condition.
+struct Condition {
+  std::string name;
+  Known known = {};
+};
+[[nodiscard]] ThermalConditions conditions_of(const Scene& scene, std::span<const Condition> all);
+// The same from a CSV file with the columns patch, T, Q, in any order, one of T and Q in each row. Problems have
+// file:line.
 [[nodiscard]] ThermalConditions read_conditions(const Scene& scene, const std::filesystem::path& file);
 
 // Gray diffuse surfaces with emissivity 1 - Kd that exchange sigma T^4. With J what leaves and H what arrives, per

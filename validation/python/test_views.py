@@ -192,7 +192,7 @@ def test_a_balanced_matrix_closes_to_the_bit(tmp_path):
     assert same_bits(power, power.T) and not same_bits(found.value, matrix.value)
     assert (found.lower <= found.value).all() and (found.value <= found.upper).all()
     for row, back, free in zip(found.value.tolist(), found.back, found.open):
-        assert abs(math.fsum([*row, back.value, free.value]) - 1.0) <= 2.0**-52
+        assert abs(math.fsum([*row, back.value, free.value]) - 1.0) <= 2.0**-51
     assert found["srf-1", "srf-6"].value == found.value[0, 5]
     found.save(tmp_path / "m.csv")
     program("matrix", L_ROOM, "--accuracy", "1e-3", "--balance", "-o", tmp_path / "program.csv")
@@ -200,6 +200,8 @@ def test_a_balanced_matrix_closes_to_the_bit(tmp_path):
     found.save(tmp_path / "m.npz")
     with np.load(tmp_path / "m.npz") as file:
         assert same_bits(file["data"], found.value[found.claim != "zero"])
+        assert same_bits(file["factor"], matrix.value[matrix.claim != "zero"])
+        assert same_bits(file["open"], np.array([f.value for f in found.open]))
     with pytest.raises(exactff.InputError, match="what meets backs is not computed"):
         exactff.view_factor_matrix(scene, accuracy=1e-1).balanced()
 
@@ -220,3 +222,36 @@ def test_exchange_factors_are_those_of_a_dense_solver(tmp_path):
         assert same_bits(found.conductors[c], found.conductors[c].T)
     program("matrix", CORNELL, "--accuracy", "1e-2", "--balance", "--exchange", tmp_path / "program.csv")
     assert (tmp_path / "b.csv").read_bytes() == (tmp_path / "program.csv").read_bytes()
+
+
+def test_files_of_other_programs_are_those_of_the_program(tmp_path):
+    matrix = exactff.view_factor_matrix(exactff.Scene.read(L_ROOM), accuracy=1e-2, backs=True, sky=True).balanced()
+    for name, file in ("openfoam", "F"), ("calculix", "m.vwf"), ("moose", "m.csv"), ("nek", "m.nek"), ("esatan", "m.gr"):
+        (ours := tmp_path / name).mkdir()
+        (theirs := tmp_path / f"{name} of the program").mkdir()
+        matrix.save(ours / file, format=name)
+        program("matrix", L_ROOM, "--accuracy", "1e-2", "--balance", f"--{name}", theirs / file)
+        assert sorted(p.name for p in ours.iterdir()) == sorted(p.name for p in theirs.iterdir())
+        for path in ours.iterdir():
+            assert path.read_bytes() == (theirs / path.name).read_bytes()
+    (tmp_path / "mapDist").touch()
+    with pytest.raises(exactff.InputError, match="mapDist"):
+        matrix.save(tmp_path / "F", format="openfoam")
+    with pytest.raises(exactff.InputError, match="give csv, npz, vtk, view3d, energyplus, openfoam"):
+        matrix.save(tmp_path / "m.gr", format="foam")
+
+
+def test_temperatures_are_those_of_the_program(tmp_path):
+    cavity = SCENES / "triangular_cavity.obj"
+    matrix = exactff.view_factor_matrix(exactff.Scene.read(str(cavity)), accuracy=1e-3, backs=True, sky=True).balanced()
+    found = matrix.temperatures({"bottom": 300.0}, {"side": 6e6, "slope": 5e6, "ends": 0.0}, save=tmp_path / "t.csv")
+    program("radiosity", cavity, "--temperatures", SCENES / "triangular_cavity.csv", "--accuracy", "1e-3", "-o",
+            tmp_path / "program.csv")
+    assert (tmp_path / "t.csv").read_bytes() == (tmp_path / "program.csv").read_bytes()
+    assert found.names == matrix.from_names and found.value[0] == 300.0 and (found.lower <= found.value).all()
+    assert abs(found.heat.sum() - found.unbalanced[0]) < 1e-6 and found.to_open[2] == 0.0
+    for known, heats, message in (({}, {"*": 1.0}, "no bound"), ({"floor": 3.0}, {}, "floor"), ({"bottom": -1.0}, {}, "T is -1"),
+                                  ({"bottom": 300.0}, {"ends": 0.0}, "neither T nor Q has 'side'"),
+                                  ({"*": 300.0}, {"ends": 0.0}, "two rows")):
+        with pytest.raises(exactff.InputError, match=message):
+            matrix.temperatures(known, heats)

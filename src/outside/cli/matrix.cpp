@@ -46,14 +46,13 @@ constexpr const char* kMatrixFooter =
     "with --resume continues from there. On several machines: `mpirun -n 4 exactff matrix ... -o FILE`, or separate\n"
     "jobs with --shard 1/4, 2/4, ... whose files `exactff merge` joins. With --resume and a complete FILE, also a\n"
     "merged one, the other files are made again. The bytes depend on none of this.\n"
-    "View3D's output has six decimals and no bounds; its rows add up to 1 only within that. EnergyPlus reads the\n"
-    "names of patches as names of surfaces. Where fronts of two patches overlap in one plane, such as a window and\n"
-    "its wall, both count in full and rows exceed 1: a warning names them, and neither file is written without\n"
-    "--force.\n"
+    "Files of other programs have the patches in the order of the rows; the output says what a file loses. Where\n"
+    "fronts of two patches overlap in one plane, such as a window and its wall, both count in full and rows exceed 1:\n"
+    "a warning names them, and such a file is not written without --force.\n"
     "--balance chooses the nearest matrix within all intervals in which A_i F_ij and A_j F_ji are the same double and\n"
-    "every row adds up to 1, to an ulp (the output says how far). If there is none, a warning names the rows or pairs\n"
-    "that prove it, and the exit code is 1. -o then has the column 'balanced', and the table and all other files have\n"
-    "its values.\n"
+    "every row adds up to 1 within 2^-51 (the output says how far). If there is none, a warning names the rows or\n"
+    "pairs that prove it, and the exit code is 1. -o then has the column 'balanced', and the table and all other\n"
+    "files have its values.\n"
     "--matrix FILE takes the entries from a file of `exactff matrix SCENE -o FILE`, with all columns that are needed.\n"
     "--exchange FILE holds Gebhart's factors: of what a patch emits, the share that another one absorbs after all\n"
     "bounces, with the emissivity 1 - Kd; backs and the sky are black. Bounds follow from those of the view factors,\n"
@@ -63,31 +62,9 @@ constexpr const char* kMatrixFooter =
     "  exactff matrix data/scenes/cornell_box.obj --from light --to 'floor,*_block' --accuracy 1e-4\n"
     "  exactff matrix data/scenes/formats/test4.vs3 --backs --to all,sky --npz build/factors.npz";
 
-// --- Files of other programs ---
-
-// Those that number surfaces, with what their files lose.
-struct ProgramFile {
-  const char *flag, *what, *help, *lost;
-  std::string (*text)(const Scene&, const matrix::Matrix&);
-  flags::Beside beside = flags::Beside::kNothing;
-};
-constexpr const char* kNumbers = "bounds and names; patches are numbered in the order of the rows";
-const std::array<ProgramFile, 5> kProgramFiles{{
-    {"--openfoam", "OpenFOAM file", "Write F as OpenFOAM's viewFactorsGen does, and globalFaceFaces beside it",
-     "bounds and names; coarse face k of the case must be patch k",
-     [](const Scene& scene, const matrix::Matrix& m) { return openfoam_files(scene, m).factors; },
-     flags::Beside::kFaceFaces},
-    {"--calculix", "CalculiX file", "Write the file (.vwf) that *VIEWFACTOR, READ of CalculiX 2.20 reads", kNumbers,
-     matrix::calculix_text},
-    {"--moose", "MOOSE file", "Write CSV as MOOSE's ViewFactorVectorPostprocessor does", kNumbers, matrix::moose_text},
-    {"--nek", "Nek5000 file", "Write view factors for Nek5000 and NekRS; a patch named 12:3 is face 3 of element 12",
-     kNumbers, matrix::nek_text},
-    {"--esatan", "ESATAN file", "Write the conductors as lines GR(1, 2) = ...; computes backs and the sky, too",
-     "bounds; comments have the names", nullptr},
-}};
-constexpr std::size_t kEsatan = kProgramFiles.size() - 1;
-
 constexpr std::size_t kMostShown = 12;  // rows and columns of the printed table
+
+std::string flag_of(const matrix::ProgramFormat& format) { return "--" + std::string(format.name); }
 
 struct MatrixArguments {
   flags::SceneArguments scene;
@@ -95,8 +72,8 @@ struct MatrixArguments {
   matrix::Options options;
   bool plain = false, balance = false;
   std::string matrix;  // a file
-  std::string csv, npz, view3d, energyplus, vtk, exchange;
-  std::array<std::string, kProgramFiles.size()> programs;  // files of kProgramFiles
+  std::string csv, npz, vtk, exchange;
+  std::vector<std::string> programs = std::vector<std::string>(matrix::program_formats().size());  // files, or empty
   std::string zone = "Zone 1";
   std::string shard;
   bool resume = false;
@@ -105,15 +82,17 @@ struct MatrixArguments {
   [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
   // Whether every row must have all that it sees.
   [[nodiscard]] bool needs_all() const { return balance || exchanges(); }
-  [[nodiscard]] bool exchanges() const { return !exchange.empty() || !programs[kEsatan].empty(); }
-  [[nodiscard]] bool has_program_file() const {
-    return !view3d.empty() || !energyplus.empty() ||
-           std::ranges::any_of(programs, [](const std::string& file) { return !file.empty(); });
+  [[nodiscard]] bool exchanges() const {
+    const auto given = program_files();
+    return !exchange.empty() || std::ranges::any_of(given, [](const auto& one) { return one.first->of_conductors; });
   }
-  // Of --openfoam.
-  [[nodiscard]] std::filesystem::path face_faces() const {
-    return programs[0].empty() ? std::filesystem::path()
-                               : std::filesystem::path(programs[0]).replace_filename("globalFaceFaces");
+  // Those that are given.
+  [[nodiscard]] std::vector<std::pair<const matrix::ProgramFormat*, std::string>> program_files() const {
+    std::vector<std::pair<const matrix::ProgramFormat*, std::string>> given;
+    for (std::size_t k = 0; k < programs.size(); ++k) {
+      if (!programs[k].empty()) given.emplace_back(&matrix::program_formats()[k], programs[k]);
+    }
+    return given;
   }
   // A pipe or a device has no journal.
   [[nodiscard]] bool keeps_work() const {
@@ -242,19 +221,15 @@ void check_shard_and_resume(const MatrixArguments& args) {
                      std::string(args.balance ? " --balance" : " without this flag"));
   }
   if (args.shard.empty()) return;
-  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) {
-    if (args.programs[k].empty()) continue;
-    text::refuse(
-        std::string(kProgramFiles[k].flag) + " is given with --shard", "a shard has only a part of the entries",
-        "after exactff merge, run this command without --shard, with --resume and -o FILE for the merged file");
-  }
-  for (const auto& [flag, given] :
-       {std::pair("--plain", args.plain), std::pair("--npz", !args.npz.empty()), std::pair("--vtk", !args.vtk.empty()),
-        std::pair("--exchange", !args.exchange.empty()), std::pair("--view3d", !args.view3d.empty()),
-        std::pair("--energyplus", !args.energyplus.empty())}) {
+  std::vector<std::pair<std::string, bool>> all{{"--plain", args.plain},
+                                                {"--npz", !args.npz.empty()},
+                                                {"--vtk", !args.vtk.empty()},
+                                                {"--exchange", !args.exchange.empty()}};
+  for (const auto& [format, file] : args.program_files()) all.emplace_back(flag_of(*format), true);
+  for (const auto& [flag, given] : all) {
     if (!given) continue;
     text::refuse(
-        std::string(flag) + " is given with --shard", "a shard has only a part of the entries",
+        flag + " is given with --shard", "a shard has only a part of the entries",
         "after exactff merge, run this command without --shard, with --resume and -o FILE for the merged file");
   }
 }
@@ -266,10 +241,14 @@ void check_outputs(const MatrixArguments& args) {
   } else if (!args.csv.empty()) {
     require_free_file(args.csv, args.force);
   }
-  std::vector<files::NamedFile> files{
-      {"--npz", args.npz}, {"--view3d", args.view3d},     {"--energyplus", args.energyplus},
-      {"--vtk", args.vtk}, {"--exchange", args.exchange}, {"the faces of --openfoam", args.face_faces()}};
-  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) files.push_back({kProgramFiles[k].flag, args.programs[k]});
+  std::vector<files::NamedFile> files{{"--npz", args.npz}, {"--vtk", args.vtk}, {"--exchange", args.exchange}};
+  for (const auto& [format, file] : args.program_files()) {
+    files.push_back({flag_of(*format), file});
+    if (format->name != "openfoam") continue;
+    for (const std::string_view name : matrix::kOpenFoamFiles) {
+      files.push_back({std::string(name) + " of --openfoam", std::filesystem::path(file).replace_filename(name)});
+    }
+  }
   check_output_files(files, args.existing() != jobs::Existing::kRefuse);
 }
 
@@ -281,37 +260,25 @@ void check_row_of_vtk(const MatrixArguments& args, const std::vector<Selection>&
                to.empty() ? "name patches by --to" : "name one patch by --from");
 }
 
+void write_program_file(const matrix::ProgramFormat& format, const matrix::Square& square, const std::string& file) {
+  for (const auto& [path, text] : files_of(format, square, file)) write_whole_file(path, text);
+}
+
 void write_files(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
-  const auto write_text = [](const std::string& file, const auto& text) {
-    if (!file.empty()) write_whole_file(file, text());
-  };
-  if (!args.npz.empty()) write_npz(scene, matrix, args.npz);
-  write_text(args.view3d, [&] { return view3d_text(scene, matrix); });
-  write_text(args.energyplus, [&] { return energyplus_text(scene, matrix, args.zone); });
   if (!args.vtk.empty()) write_vtk(scene, matrix, args.vtk);
-  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) {
-    if (!args.programs[k].empty() && k != kEsatan) {
-      write_whole_file(args.programs[k], kProgramFiles[k].text(scene, matrix));
-    }
+  for (const auto& [format, file] : args.program_files()) {
+    if (!format->of_conductors) write_program_file(*format, square_of(*format, scene, matrix, args.zone), file);
   }
-  if (!args.programs[0].empty()) write_whole_file(args.face_faces(), openfoam_files(scene, matrix).faces);
-  if (args.view3d.empty()) return;
-  warn("View3D's output holds six decimals, no bounds and no names", "factors below 5e-7 become 0",
-       "use -o or --npz where more is needed");
 }
 
 void print_files(const MatrixArguments& args) {
   const std::vector<std::pair<const char*, const std::string*>> files = {
-      {"Matrix", &args.csv},         {"NumPy file", &args.npz},
-      {"View3D file", &args.view3d}, {"EnergyPlus file", &args.energyplus},
-      {"VTK file", &args.vtk},       {"Exchange factors", &args.exchange}};
+      {"Matrix", &args.csv}, {"NumPy file", &args.npz}, {"VTK file", &args.vtk}, {"Exchange factors", &args.exchange}};
   for (const auto& [what, file] : files) {
     if (!file->empty()) std::cout << what << ": " << text::printable(*file) << '\n';
   }
-  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) {
-    if (args.programs[k].empty()) continue;
-    std::cout << kProgramFiles[k].what << ": " << text::printable(args.programs[k]) << " (without "
-              << kProgramFiles[k].lost << ")\n";
+  for (const auto& [format, file] : args.program_files()) {
+    std::cout << format->program << " file: " << text::printable(file) << " (without " << format->lost << ")\n";
   }
 }
 
@@ -319,7 +286,7 @@ void print_files(const MatrixArguments& args) {
 void check_overlaps(const MatrixArguments& args, const Scene& scene, const std::vector<Selection>& to) {
   std::optional<Problem> overlaps = problem_of_overlaps(scene, to);
   if (!overlaps) return;
-  if (!args.force && args.has_program_file()) {
+  if (!args.force && !args.program_files().empty()) {
     overlaps->why = "a file for another program with such rows makes energy, and was not written";
     overlaps->suggestion += "; --force writes it all the same";
     throw InputError(std::move(*overlaps));
@@ -333,10 +300,12 @@ void check_content(const MatrixArguments& args, const Scene& scene, const std::v
   check_row_of_vtk(args, from, to);
   check_overlaps(args, scene, to);
   matrix::Matrix empty{{from, to, std::vector<ViewFactor>(from.size() * to.size())}, {}, {}, {}};
-  if (!args.view3d.empty()) (void)view3d_text(scene, empty);
-  if (!args.energyplus.empty()) (void)energyplus_text(scene, empty, args.zone);
-  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) {
-    if (!args.programs[k].empty() && k != kEsatan) (void)kProgramFiles[k].text(scene, empty);
+  for (const auto& [format, file] : args.program_files()) {
+    (void)format->texts(square_of(*format, scene, empty, args.zone));
+  }
+  if (args.exchanges() && (from != radiosity::patches_of(scene) || to != from)) {
+    text::refuse("exchange factors are asked for, and not all patches are rows and columns, in their order",
+                 "light bounces between all of them", "leave out --from and --to");
   }
   if (!args.balance) return;
   empty.back.resize(from.size());
@@ -411,7 +380,9 @@ bool write_exchange(const MatrixArguments& args, const MatrixJob& job, const mat
   const radiosity::Exchange found = radiosity::exchange(job.scene, matrix, job.request.options.threads, hooks);
   bar.clear();
   if (!args.exchange.empty()) table::write(table_of(job.scene, found, job.request.options.factors), args.exchange);
-  if (!args.programs[kEsatan].empty()) write_whole_file(args.programs[kEsatan], esatan_text(job.scene, found));
+  for (const auto& [format, file] : args.program_files()) {
+    if (format->of_conductors) write_program_file(*format, square_of(*format, job.scene, found), file);
+  }
   for (const radiosity::Exchange::Channel& channel : found.channels) {
     if (channel.is_bounded()) continue;
     warn("some exchange factors have no bound", channel.no_bound, channel.remedy);
@@ -434,6 +405,7 @@ int finish(const MatrixArguments& args, const MatrixJob& job, matrix::Matrix mat
   if (!args.keeps_work() && !args.csv.empty()) {
     write_whole_file(args.csv, csv_text(table_of(job.scene, matrix, options.factors, balanced ? &*balanced : nullptr)));
   }
+  if (!args.npz.empty()) write_npz(job.scene, matrix, args.npz, balanced ? &*balanced : nullptr);
   if (balanced && !args.plain) print_balanced(matrix, *balanced);
   if (balanced) matrix = with_values(std::move(matrix), *balanced);
   write_files(args, job.scene, matrix);
@@ -502,25 +474,24 @@ void add_outputs(CLI::App& command, MatrixArguments& args) {
                      flags::Beside::kJournal);
   flags::add_written(command, "--npz", args.npz, "Write the arrays of a sparse matrix for NumPy and SciPy",
                      flags::Format::kNpz);
-  flags::add_written(command, "--view3d", args.view3d, "Write the matrix as View3D does, with six decimals",
-                     flags::Format::kView3d);
-  CLI::Option* energyplus =
-      flags::add_written(command, "--energyplus", args.energyplus,
-                         "Write view factors for the input file of EnergyPlus", flags::Format::kEnergyPlus);
-  command.add_option("--zone", args.zone, "Name of EnergyPlus' zone")
-      ->type_name("TEXT")
-      ->needs(energyplus)
-      ->capture_default_str();
   flags::add_written(command, "--vtk", args.vtk,
                      "Write the one row that --from names, on the scene, as NAME.vtp or NAME.vtu", flags::Format::kVtk);
   flags::add_written(command, "--exchange", args.exchange,
                      "Write exchange factors over all bounces and radiative conductors, with bounds, as CSV, .npz or "
                      ".jsonl; computes backs and the sky, too",
                      flags::Format::kTable);
-  for (std::size_t k = 0; k < kProgramFiles.size(); ++k) {
-    const ProgramFile& one = kProgramFiles[k];
-    flags::add_written(command, one.flag, args.programs[k], one.help, flags::Format::kProgram, one.beside);
+  for (std::size_t k = 0; k < args.programs.size(); ++k) {
+    const matrix::ProgramFormat& one = matrix::program_formats()[k];
+    const flags::Format format = one.name == "energyplus" ? flags::Format::kEnergyPlus
+                                 : one.name == "moose"    ? flags::Format::kCsv
+                                                          : flags::Format::kProgram;
+    flags::add_written(command, flag_of(one), args.programs[k], std::string(one.help), format,
+                       one.name == "openfoam" ? flags::Beside::kOpenFoam : flags::Beside::kNothing);
   }
+  command.add_option("--zone", args.zone, "Name of EnergyPlus' zone")
+      ->type_name("TEXT")
+      ->needs("--energyplus")
+      ->capture_default_str();
   command.add_option("--shard", args.shard, "Compute only part I of N, for exactff merge: 1/4 is the first of four")
       ->type_name("I/N");
   CLI::Option* resume = command.add_flag("--resume", args.resume, "Continue an interrupted run, if there is one");

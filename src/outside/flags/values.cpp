@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "exactff/jobs.h"
+#include "exactff/matrix.h"
 #include "files/file.h"
 #include "scene/selections.h"
 #include "text/escape.h"
@@ -196,7 +197,6 @@ const std::vector<NamedFormat>& formats() {
       {Format::kSvg, "an SVG drawing", {".svg"}},
       {Format::kJson, "JSON", {".json"}},
       {Format::kXml, "XML", {".xml"}},
-      {Format::kView3d, "View3D's output"},
       {Format::kEnergyPlus, "objects of EnergyPlus", {".idf"}},
       {Format::kProgram, "numbers of another program"},
       {Format::kTable, "a table", {".csv", ".npz", ".jsonl"}},
@@ -289,8 +289,10 @@ void add_beside(const CLI::App& command, const GivenFile& one, std::vector<Named
       add_journal("the view factors of " + called, kept_factors_of(file), written);
       add_journal("the view factors that " + called + " computes again", kept_again_of(file), written);
       break;
-    case Beside::kFaceFaces:
-      add_whole("the faces of " + called, file.parent_path() / "globalFaceFaces", written);
+    case Beside::kOpenFoam:
+      for (const std::string_view name : matrix::kOpenFoamFiles) {
+        add_whole(std::string(name) + " of " + called, file.parent_path() / name, written);
+      }
       break;
     case Beside::kScene:
       add_whole("the scene of " + called, vtk::scene_file(file), written);

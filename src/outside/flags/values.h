@@ -82,7 +82,6 @@ enum class Format {
   kSvg,
   kJson,
   kXml,
-  kView3d,
   kEnergyPlus,
   kProgram,  // numbers of another program, by any name
   kTable,    // CSV, .npz or .jsonl
@@ -96,7 +95,7 @@ enum class Beside {
   kNothing,
   kJournal,      // FILE.part, until FILE is complete
   kViewFactors,  // of `exactff radiosity`: FILE.factors and its journal, FILE.again.part
-  kFaceFaces,    // globalFaceFaces in the same folder
+  kOpenFoam,     // matrix::kOpenFoamFiles in the same folder
   kScene,        // NAME_scene.vtp of NAME.vtp
   kMaterials,    // NAME.mtl of NAME.obj
 };

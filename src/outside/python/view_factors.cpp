@@ -58,15 +58,19 @@ class MadeMatrix {
   MadeMatrix(std::shared_ptr<const SharedScene> scene, matrix::Matrix made, ViewFactorOptions options)
       : shared_(std::move(scene)), made_(std::move(made)), options_(options) {}
 
-  // The extension says which file: .csv, .npz, .idf (EnergyPlus), .out (View3D), .vtp or .vtu (one row).
-  void write(const std::filesystem::path& path, const std::string& extension, const std::string& zone) const {
+  // `format`: csv, npz, vtk (one row), or a name of matrix::program_formats().
+  void write(const std::filesystem::path& path, const std::string& format, const std::string& zone) const {
     const py::gil_scoped_release released;
     const Scene& scene = shared_->scene();
-    if (extension == ".npz") return matrix::write_npz(scene, made_, path);
-    if (extension == ".vtp" || extension == ".vtu") return write_row(path);
-    if (extension == ".csv") return write_whole_files({{path, csv_text()}});
+    if (format == "npz") return matrix::write_npz(scene, computed(), path, balanced_.get());
+    if (format == "vtk") return write_row(path);
+    if (format == "csv") return write_whole_files({{path, csv_text()}});
     refuse_overlaps(path);
-    write_whole_files({{path, extension == ".idf" ? energyplus_text(scene, made_, zone) : view3d_text(scene, made_)}});
+    const auto formats = matrix::program_formats();
+    const matrix::ProgramFormat& one = *std::ranges::find(formats, format, &matrix::ProgramFormat::name);
+    const matrix::Square square = one.of_conductors ? square_of(one, scene, radiosity::exchange(scene, made_))
+                                                    : square_of(one, scene, made_, zone);
+    write_whole_files(files_of(one, square, path));
   }
 
   // The same with balanced values; that of rows, and the largest distance of a row from 1.
@@ -106,6 +110,23 @@ class MadeMatrix {
     return py::make_tuple(channels, std::string(to_string(found.claim)), found.areas);
   }
 
+  // Temperatures, heats (n, 3); areas, emissivities; heat to backs, to what is open, unaccounted for (3, 3); the claim.
+  // The CSV file, in `path` if it is not empty.
+  [[nodiscard]] py::tuple temperatures(const std::map<std::string, double>& known,
+                                       const std::map<std::string, double>& heats,
+                                       const std::filesystem::path& path) const {
+    const Scene& scene = shared_->scene();
+    std::vector<radiosity::Condition> all;
+    for (const auto& [name, t] : known) all.push_back({name, {.temperature = t}});
+    for (const auto& [name, q] : heats) all.push_back({name, {.heat = q}});
+    const radiosity::Temperatures found = radiosity::temperatures(scene, made_, radiosity::conditions_of(scene, all));
+    if (!found.is_bounded()) text::refuse("temperatures have no bound", found.no_bound, found.remedy);
+    if (!path.empty()) table::write(table_of(scene, found, options_), path);
+    return py::make_tuple(to_array(found.temperatures), to_array(found.heats), to_array(found.areas),
+                          to_array(found.emissivities), to_array({found.to_back, found.to_open, found.unbalanced}),
+                          std::string(to_string(found.claim)));
+  }
+
  private:
   static Numbers to_array(const std::vector<radiosity::BoundedValue>& values) {
     Numbers array({values.size(), std::size_t{3}});
@@ -119,9 +140,9 @@ class MadeMatrix {
   static Numbers to_array(const std::vector<double>& values) {
     return Numbers(static_cast<py::ssize_t>(values.size()), values.data());
   }
+  [[nodiscard]] const matrix::Matrix& computed() const { return unbalanced_ ? *unbalanced_ : made_; }
   [[nodiscard]] std::string csv_text() const {
-    const matrix::Matrix& values = unbalanced_ ? *unbalanced_ : made_;
-    return table::csv_text(table_of(shared_->scene(), values, options_, balanced_.get()));
+    return table::csv_text(table_of(shared_->scene(), computed(), options_, balanced_.get()));
   }
   void write_row(const std::filesystem::path& path) const {
     if (made_.factors.from.size() != 1 || made_.factors.to.empty()) {
@@ -138,7 +159,7 @@ class MadeMatrix {
     if (overlaps.empty()) return;
     Problem problem = slips::warning_of_overlaps(shared_->scene(), overlaps);
     problem.file = path.string();
-    problem.why = "a file for EnergyPlus or View3D with such rows makes energy, and was not written";
+    problem.why = "a file for another program with such rows makes energy, and was not written";
     throw InputError(std::move(problem));
   }
 
@@ -218,7 +239,16 @@ void bind_view_factors(py::module_& module) {
   py::class_<MadeMatrix, std::shared_ptr<MadeMatrix>>(module, "MadeMatrix")
       .def("balanced", &MadeMatrix::balanced)
       .def("exchange", &MadeMatrix::exchange, py::arg("threads"), py::arg("path"), py::arg("progress"))
-      .def("write", &MadeMatrix::write, py::arg("path"), py::arg("extension"), py::arg("zone"));
+      .def("temperatures", &MadeMatrix::temperatures, py::arg("known"), py::arg("heats"), py::arg("path"))
+      .def("write", &MadeMatrix::write, py::arg("path"), py::arg("format"), py::arg("zone"));
+  py::list formats;
+  for (const matrix::ProgramFormat& one : matrix::program_formats()) {
+    formats.append(py::make_tuple(std::string(one.name), std::string(one.extension), std::string(one.lost)));
+  }
+  module.attr("matrix_formats") = py::tuple(formats);
+  py::list beside;
+  for (const std::string_view name : matrix::kOpenFoamFiles) beside.append(std::string(name));
+  module.attr("openfoam_files") = py::tuple(beside);
   module.def("view_factor", &view_factor_of, py::arg("scene"), py::arg("from_patch"), py::arg("to_patch"),
              py::arg("accuracy"), py::arg("budget"), py::arg("certify"));
   module.def("view_factor_matrix", &view_factor_matrix_of, py::arg("scene"), py::arg("from_patches"),

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "kernel/double_double.h"
 #include "kernel/float_environment.h"
 #include "matrix/row_facts.h"
 #include "text/phrases.h"
@@ -24,10 +25,12 @@ using Numbers = std::vector<double>;
 constexpr double kFirstAdded = 1e-3, kLeastAdded = 1e-8, kMostAdded = 1.0;  // to the diagonal, of all widths in a row
 constexpr double kSmallResidual = 1e-9;                                     // of conjugate gradients, relative
 constexpr double kBalancedRow = 0x1p-52;                                    // what rounding can still make up for
+constexpr double kMendable = 0x1p-42;                                       // what walks can still make up for
+constexpr double kFurthestRow = 0x1p-51;                                    // the bound that is promised
 constexpr double kProofMargin = 0x1p-40;                                    // of a sum of products with areas, relative
-constexpr int kMostSteps = 100, kMostIterations = 400, kMostHalvings = 50, kMostDoublings = 60;
+constexpr int kMostSteps = 200, kMostIterations = 400, kMostHalvings = 50, kMostDoublings = 60;
 constexpr double kFar = 100.0;  // so many steps at once may lead on for ever
-constexpr int kUlpsToChooseFrom = 3;
+constexpr int kUlpsToChooseFrom = 3, kUlpsToSearch = 1 << 12, kMostMoves = 64;
 
 // A sum with what its roundings lost (Neumaier).
 class Total {
@@ -41,6 +44,27 @@ class Total {
 
  private:
   double sum_ = 0.0, lost_ = 0.0;
+};
+
+// A sum without any rounding: doubles of decreasing size whose bits do not overlap (Shewchuk).
+class ExactSum {
+ public:
+  void add(double x) {
+    std::size_t kept = 0;
+    for (const double part : parts_) {
+      const auto sum = kernel::double_double::two_sum(x, part);
+      x = sum.hi;
+      if (sum.lo != 0.0) parts_[kept++] = sum.lo;
+    }
+    parts_.resize(kept);
+    parts_.push_back(x);
+  }
+  [[nodiscard]] double value() const { return std::accumulate(parts_.begin(), parts_.end(), 0.0); }
+  // At least its absolute value; at most an ulp more.
+  [[nodiscard]] double size() const { return parts_.size() > 1 ? kernel::above(std::abs(value())) : std::abs(value()); }
+
+ private:
+  std::vector<double> parts_;  // the largest one is the last
 };
 
 enum class Place : std::uint8_t { kPatches, kBack, kOpen, kBuried };
@@ -164,11 +188,12 @@ class Balancing {
       least = std::min(least, now);
       const Numbers s = newton_step(l, g, added);
       const double t = advance(l, g, s);
+
       added = t < 1.0 ? std::min(10.0 * added, kMostAdded) : std::max(0.1 * added, kLeastAdded);
       if ((t == 0.0 || t > kFar) && prove(s)) return {};
       if (t == 0.0) break;
     }
-    if (furthest(excess(best)) <= 16.0 * kBalancedRow) return best;
+    if (furthest(excess(best)) <= kMendable) return best;
     (void)prove(l);
     return {};
   }
@@ -236,7 +261,7 @@ class Balancing {
     for (int k = 0; now < 0.5 * slope && k < kMostDoublings; ++k) now = slope_at(t = 2.0 * std::exchange(low, t));
     if (now < 0.5 * slope) return 0.0;
     high = t;
-    for (int k = 0; std::abs(now) > -0.5 * slope && k < kMostHalvings; ++k) {
+    for (int k = 0; (now < 0.5 * slope || now > -0.01 * slope) && k < kMostHalvings; ++k) {
       t = 0.5 * (low + high);
       now = slope_at(t);
       (now < 0.0 ? low : high) = t;
@@ -326,9 +351,9 @@ class Balancing {
 
   // --- Step 4 ---
 
-  // Two doubles for a pair, and what they differ from what is wanted, as shares of the rows.
+  // Two doubles for a pair, or one and 0.
   struct Choice {
-    double forth = 0.0, back = 0.0, of_first = 0.0, of_second = 0.0;
+    double forth = 0.0, back = 0.0;
   };
 
   void round(const Numbers& l) {
@@ -337,19 +362,16 @@ class Balancing {
     Numbers x;
     for (const Term& term : terms_) x.push_back(term.at(l));
     std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) { return x[a] != x[b] ? x[a] > x[b] : a < b; });
-    Numbers lacks = excess(l);  // of each row, as a share of it
-    for (std::size_t i = 0; i < size(); ++i) lacks[i] = -lacks[i] / areas_[i];
+    lacks_ = excess(l);
+    for (std::size_t i = 0; i < size(); ++i) lacks_[i] = -lacks_[i] / areas_[i];
     result_.entries.assign(size() * size(), 0.0);
     for (const Place place : {Place::kBack, Place::kOpen, Place::kBuried})
       rounded(place).assign(column(place).size(), 0.0);
-    for (const std::uint32_t k : order) {
-      const Term& term = terms_[k];
-      const Choice choice = term.is_pair() ? round_pair(term, x[k], lacks) : round_single(term, x[k], lacks);
-      lacks[term.first] -= choice.of_first;
-      if (term.is_pair()) lacks[term.second] -= choice.of_second;
-      store(term, choice);
-    }
-    set_furthest();
+    for (const std::uint32_t k : order) round_term(terms_[k], x[k]);
+    for (std::uint32_t i = 0; i < size(); ++i) lacks_[i] = -row_sum(i, -1.0).value();
+    for (std::uint32_t i = 0; i < size(); ++i) mend(i);
+    for (std::uint32_t i = 0; i < size(); ++i) result_.furthest = std::max(result_.furthest, row_sum(i, -1.0).size());
+    if (result_.furthest > kFurthestRow) result_ = {};
   }
 
   Numbers& rounded(Place place) {
@@ -358,77 +380,123 @@ class Balancing {
            : place == Place::kOpen  ? result_.open
                                     : result_.buried;
   }
-
-  void store(const Term& term, const Choice& choice) {
-    const std::size_t i = given_[term.first], j = given_[term.second];
-    if (term.place != Place::kPatches) {
-      rounded(term.place)[i] = choice.forth;
-      return;
-    }
-    result_.entries[i * size() + j] = choice.forth;
-    if (term.is_pair()) result_.entries[j * size() + i] = choice.back;
+  // Where the entries of a term are.
+  double& forth(const Term& term) {
+    const std::size_t i = given_[term.first];
+    return term.place == Place::kPatches ? result_.entries[i * size() + given_[term.second]] : rounded(term.place)[i];
   }
+  double& back(const Term& term) { return result_.entries[given_[term.second] * size() + given_[term.first]]; }
 
-  [[nodiscard]] Choice choice_of(const Term& term, double x, double product) const {
-    const double a = areas_[term.first], b = areas_[term.second], f = product / a, g = product / b;
-    return {f, g, std::fma(f, a, -x) / a, std::fma(g, b, -x) / b};
+  [[nodiscard]] ExactSum row_sum(std::uint32_t i, double first) {
+    ExactSum sum;
+    sum.add(first);
+    for (std::size_t j = 0; j < size(); ++j) sum.add(result_.entries[given_[i] * size() + j]);
+    for (const Place place : {Place::kBack, Place::kOpen, Place::kBuried}) {
+      if (!rounded(place).empty()) sum.add(rounded(place)[given_[i]]);
+    }
+    return sum;
   }
 
   [[nodiscard]] static bool holds(const ViewFactor& f, double value) { return f.lower <= value && value <= f.upper; }
 
-  // Among the doubles within a few ulps of x that are products with both areas: the one that leaves the rows least to
-  // make up for. The next such one, if there is none so near.
-  [[nodiscard]] Choice round_pair(const Term& term, double x, const Numbers& lacks) const {
-    if (x == 0.0) return {};
+  // The doubles within a few ulps of x that are products with both areas; the next such ones, if there is none so near.
+  template <class Visit>
+  void for_each_choice(const Term& term, double x, const Visit& visit) const {
     const double a = areas_[term.first], b = areas_[term.second];
     const ViewFactor &forth = factor(term.first, term.second), &back = factor(term.second, term.first);
-    const auto is_product = [&](const Choice& c, double product) {
-      return c.forth * a == product && c.back * b == product;
-    };
-    Choice best;
+    for (const bool inside : {true, false}) {
+      bool any = false;
+      const auto consider = [&](double product) {
+        const Choice c{product / a, product / b};
+        if (c.forth * a != product || c.back * b != product) return;
+        if (inside && !(holds(forth, c.forth) && holds(back, c.back))) return;
+        any = true;
+        visit(c);
+      };
+      consider(x);
+      double up = x, down = x;
+      for (int k = 0; k < (any ? kUlpsToChooseFrom : kUlpsToSearch); ++k) {
+        consider(up = kernel::above(up));
+        consider(down = kernel::below(down));
+      }
+      if (any) return;
+    }
+  }
+
+  // The choice that leaves the rows least to make up for.
+  void round_term(const Term& term, double x) {
+    const double a = areas_[term.first], b = areas_[term.second];
+    if (!term.is_pair()) {
+      const ViewFactor& f = single(term);
+      forth(term) = std::clamp(x / a, f.lower, f.upper);
+      // What the row lacks, too, as long as it is a rounding.
+      const double with_rest = std::clamp((x / a) + lacks_[term.first], f.lower, f.upper);
+      if (std::abs(with_rest - forth(term)) <= 8.0 * kBalancedRow * x / a) forth(term) = with_rest;
+      lacks_[term.first] -= std::fma(forth(term), a, -x) / a;
+      return;
+    }
+    if (x == 0.0) return;
     double least = std::numeric_limits<double>::infinity();
-    const auto consider = [&](double product, bool inside) {
-      const Choice c = choice_of(term, x, product);
-      if (!is_product(c, product) || (inside && !(holds(forth, c.forth) && holds(back, c.back)))) return;
-      const double of_first = lacks[term.first] - c.of_first, of_second = lacks[term.second] - c.of_second;
+    std::array<double, 2> lacks{lacks_[term.first], lacks_[term.second]};
+    for_each_choice(term, x, [&](const Choice& c) {
+      const double of_first = lacks_[term.first] - std::fma(c.forth, a, -x) / a,
+                   of_second = lacks_[term.second] - std::fma(c.back, b, -x) / b;
       const double left = of_first * of_first + of_second * of_second;
       if (left >= least) return;
       least = left;
-      best = c;
-    };
-    for (const bool inside : {true, false}) {
-      double up = x, down = x;
-      consider(x, inside);
-      for (std::size_t k = 0; k < kUlpsToChooseFrom || (std::isinf(least) && k < (inside ? 64U : 1U << 28)); ++k) {
-        consider(up = kernel::above(up), inside);
-        consider(down = kernel::below(down), inside);
-      }
-      if (std::isfinite(least)) break;
-    }
-    return best;
+      forth(term) = c.forth, back(term) = c.back;
+      lacks = {of_first, of_second};
+    });
+    lacks_[term.first] = lacks[0], lacks_[term.second] = lacks[1];
   }
 
-  [[nodiscard]] Choice round_single(const Term& term, double x, const Numbers& lacks) const {
-    const ViewFactor& f =
-        term.place == Place::kPatches ? factor(term.first, term.first) : column(term.place)[given_[term.first]];
-    const double a = areas_[term.first], wanted = (x / a) + lacks[term.first];
-    Choice best{.forth = std::clamp(x / a, f.lower, f.upper)};
-    best.of_first = std::fma(best.forth, a, -x) / a;
-    // What the row lacks, too, as long as it is a rounding.
-    const double with_rest = std::clamp(wanted, f.lower, f.upper);
-    if (std::abs(with_rest - best.forth) > 8.0 * kBalancedRow * x / a) return best;
-    return {with_rest, 0.0, std::fma(with_rest, a, -x) / a, 0.0};
+  [[nodiscard]] const ViewFactor& single(const Term& term) const {
+    return term.place == Place::kPatches ? factor(term.first, term.first) : column(term.place)[given_[term.first]];
   }
 
-  void set_furthest() {
-    for (std::size_t i = 0; i < size(); ++i) {
-      Total sum;
-      sum.add(-1.0);
-      for (std::size_t j = 0; j < size(); ++j) sum.add(result_.entries[i * size() + j]);
-      for (const Place place : {Place::kBack, Place::kOpen, Place::kBuried}) {
-        if (!rounded(place).empty()) sum.add(rounded(place)[i]);
+  // --- Step 5 ---
+
+  struct Move {
+    const Term* term = nullptr;
+    Choice choice = {};
+    double here = 0.0, there = 0.0;  // what the two rows then lack
+  };
+
+  // Moves one entry of a row by ulps so that it lacks no more than one, then one of the row of its other direction, ...
+  void mend(std::uint32_t row) {
+    const auto excess = [](double lack) { return std::max(0.0, std::abs(lack) - kBalancedRow); };
+    const Term* last = nullptr;
+    for (int moves = 0; moves < kMostMoves && excess(lacks_[row]) > 0.0; ++moves) {
+      Move best{.here = lacks_[row], .there = std::numeric_limits<double>::infinity()};
+      const auto consider = [&](const Move& move) {
+        const double here = excess(move.here), before = excess(best.here);
+        if (here < before || (here == before && excess(move.there) < excess(best.there))) best = move;
+      };
+      for (const Term& term : terms_) {
+        const bool is_first = term.first == row;
+        if ((!is_first && term.second != row) || &term == last) continue;
+        const double f = forth(term);
+        if (!term.is_pair()) {
+          const double moved = std::clamp(f + lacks_[row], single(term).lower, single(term).upper);
+          consider({&term, {moved, 0.0}, lacks_[row] - (moved - f), 0.0});
+        } else if (f > 0.0) {
+          const double g = back(term);
+          const double wanted = (f * areas_[term.first]) + (lacks_[row] * areas_[row]);
+          for_each_choice(term, std::clamp(wanted, term.lower, term.upper), [&](const Choice& c) {
+            const double of_first = lacks_[term.first] - (c.forth - f), of_second = lacks_[term.second] - (c.back - g);
+            consider({&term, c, is_first ? of_first : of_second, is_first ? of_second : of_first});
+          });
+        }
       }
-      result_.furthest = std::max(result_.furthest, std::abs(sum.value()));
+      if (best.term == nullptr) return;
+      last = best.term;
+      forth(*last) = best.choice.forth;
+      lacks_[row] = best.here;
+      if (!last->is_pair()) return;
+      back(*last) = best.choice.back;
+      const std::uint32_t other = last->first == row ? last->second : last->first;
+      lacks_[other] = best.there;
+      if (excess(best.here) == 0.0) row = other;
     }
   }
 
@@ -437,6 +505,7 @@ class Balancing {
   Numbers areas_;                   // times a power of two
   std::vector<Term> terms_;
   Numbers widths_;  // twice the sums of them, of each row
+  Numbers lacks_;   // of each row, in steps 4 and 5: what its sum is short of 1
   Balanced result_;
 };
 
@@ -499,7 +568,9 @@ std::vector<Problem> problems_of(const Scene& scene, const Matrix& matrix, const
   if (balanced.is_found()) return {};
   if (!balanced.is_impossible()) {
     return {{.what = "no balanced matrix was found, nor a proof that there is none",
-             .why = "the bounds leave next to nothing to choose from",
+             .why =
+                 "with roundings some row misses 1 by more than 2^-51, as the bounds leave next to nothing to choose "
+                 "from, or two groups of patches see only each other",
              .suggestion = "compute the matrix with a larger --accuracy"}};
   }
   const bool is_proved = balanced.claim != Claim::kEstimated;

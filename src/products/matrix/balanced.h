@@ -21,10 +21,14 @@
 // 4. Round: entries become doubles F_ij and F_ji with fl(A_i F_ij) = fl(A_j F_ji), fl being a product of doubles. Which
 //    of the nearest such pairs is taken is decided by what the rows still lack, large entries first, so that the errors
 //    of small ones make up for those of large ones.
+// 5. A row that still misses 1 by more than an ulp moves one of its entries to another such pair, then the row at the
+//    other end does, and so on along a walk. At last all rows are added up exactly: a matrix is found only if every
+//    sum is within 2^-51 of 1.
 //
 // Of step 4: let A have the significand a in [1, 2), and x that of a double X. If x < a, products of A with the doubles
-// near X / A are less than an ulp of X apart, so X is such a product. Otherwise they are a < 2 ulps apart, so at least
-// every second double near X is one. Two such sets have a double in common, nearly always within a few ulps.
+// near X / A are less than an ulp of X apart, so X is such a product. Otherwise they are a < 2 ulps apart, so of any W
+// doubles at least W / a - 1 are. Of any 2 c / (2 - c), c being the larger significand of two areas, at least one is a
+// product of both. If c is not very close to 2, that is a few ulps.
 //
 // Rows are taken in the order of their names, so the result depends neither on the order of patches nor on threads.
 #pragma once

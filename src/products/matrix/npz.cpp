@@ -15,10 +15,18 @@ double radius_of(const ViewFactor& f) {
   return radius == 0.0 ? 0.0 : kernel::above(radius);
 }
 
-void add_column(files::NpzFile& file, const std::string& name, const std::vector<ViewFactor>& column) {
+ViewFactor with_value(ViewFactor f, double value) {
+  f.value = value;
+  return f;
+}
+
+// `balanced`: the values to take, or null.
+void add_column(files::NpzFile& file, const std::string& name, const std::vector<ViewFactor>& column,
+                const std::vector<double>* balanced) {
   if (column.empty()) return;
   std::vector<double> values, radii;
-  for (const ViewFactor& f : column) {
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    const ViewFactor f = balanced == nullptr ? column[i] : with_value(column[i], (*balanced)[i]);
     values.push_back(f.value);
     radii.push_back(radius_of(f));
   }
@@ -34,17 +42,20 @@ void add_names(files::NpzFile& file, const char* name, const Scene& scene, const
 
 }  // namespace
 
-void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::path& path) {
+void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::path& path, const Balanced* balanced) {
   const Factors& all = matrix.factors;
-  std::vector<double> values, radii, area_from, area_to;
+  std::vector<double> values, factors, radii, area_from, area_to;
   std::vector<std::int64_t> columns, starts{0};
   std::vector<std::string> claims, ways;
   for (std::size_t i = 0; i < all.from.size(); ++i) {
     for (std::size_t j = 0; j < all.to.size(); ++j) {
-      const ViewFactor& f = all.at(i, j);
-      if (i == 0) area_to.push_back(f.area_to);
-      if (f.claim == Claim::kZero) continue;
+      const ViewFactor& computed = all.at(i, j);
+      if (i == 0) area_to.push_back(computed.area_to);
+      if (computed.claim == Claim::kZero) continue;
+      const ViewFactor f =
+          balanced == nullptr ? computed : with_value(computed, balanced->entries[(i * all.to.size()) + j]);
       values.push_back(f.value);
+      factors.push_back(computed.value);
       radii.push_back(radius_of(f));
       columns.push_back(static_cast<std::int64_t>(j));
       claims.emplace_back(to_string(f.claim));
@@ -59,6 +70,7 @@ void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::
   file.add("indptr", starts);
   file.add("indices", columns);
   file.add("data", values);
+  if (balanced != nullptr) file.add("factor", factors);
   file.add("radius", radii);
   file.add_texts("claim", claims);
   file.add_texts("way", ways);
@@ -66,9 +78,9 @@ void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::
   add_names(file, "to", scene, all.to);
   file.add("area_from", area_from);
   file.add("area_to", area_to);
-  add_column(file, "back", matrix.back);
-  add_column(file, "open", matrix.open);
-  add_column(file, "buried", matrix.buried);
+  add_column(file, "back", matrix.back, balanced == nullptr ? nullptr : &balanced->back);
+  add_column(file, "open", matrix.open, balanced == nullptr ? nullptr : &balanced->open);
+  add_column(file, "buried", matrix.buried, balanced == nullptr ? nullptr : &balanced->buried);
   file.commit();
 }
 

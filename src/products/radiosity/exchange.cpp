@@ -208,35 +208,24 @@ Exchange exchange(const Scene& scene, const matrix::Matrix& given, int threads, 
   return result;
 }
 
-std::string esatan_text(const Scene& scene, const Exchange& exchange) {
+matrix::Square square_of(const matrix::ProgramFormat& format, const Scene& scene, const Exchange& exchange) {
   if (exchange.channels.size() != 1 || !exchange.channels.front().is_bounded()) {
     text::refuse(exchange.channels.size() != 1 ? "Kd differs between red, green and blue"
                                                : "some exchange factors have no bound",
-                 "a network of ESATAN has one conductor for a pair of nodes",
+                 "a network of " + std::string(format.program) + " has one conductor for a pair of nodes",
                  exchange.channels.size() != 1 ? "give materials of one Kd in all channels" : "lower Kd below 1");
   }
   const Exchange::Channel& grey = exchange.channels.front();
-  const std::size_t n = exchange.patches.size();
-  std::string text = "# exactff " + std::string(kVersion) + ", radiative conductors, scene hash " + scene.hash() + '\n';
-  std::size_t nodes = 0;
-  const auto name = [&](const std::string& node) {
-    text += "# node " + std::to_string(++nodes) + ": " + text::in_quotes(node) + '\n';
+  const auto values_of = [](const std::vector<BoundedValue>& all) {
+    Numbers values;
+    for (const BoundedValue& one : all) values.push_back(one.value);
+    return values;
   };
-  for (const Selection& patch : exchange.patches) name(scene.name_of(patch));
-  if (!grey.back.empty()) name(std::string(matrix::kBack));
-  if (!grey.open.empty()) name(std::string(matrix::kOpen));
-  const auto add = [&](std::size_t i, std::size_t j, double conductor) {
-    if (conductor > 0.0)
-      text += "GR(" + std::to_string(i) + ", " + std::to_string(j) + ") = " + text::shortest(conductor) + ";\n";
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i + 1; j < n; ++j) add(i + 1, j + 1, grey.conductors[i * n + j].value);
-    std::size_t node = n;
-    for (const auto* rest : {&grey.conductors_to_back, &grey.conductors_to_open}) {
-      if (!rest->empty()) add(i + 1, ++node, (*rest)[i].value);
-    }
-  }
-  return text;
+  matrix::Square square{
+      .scene = &scene, .patches = exchange.patches, .areas = exchange.areas, .values = values_of(grey.conductors)};
+  if (!grey.back.empty()) square.rest.emplace_back(matrix::kBack, values_of(grey.conductors_to_back));
+  if (!grey.open.empty()) square.rest.emplace_back(matrix::kOpen, values_of(grey.conductors_to_open));
+  return square;
 }
 
 table::Table table_of(const Scene& scene, const Exchange& exchange, const ViewFactorOptions& options) {

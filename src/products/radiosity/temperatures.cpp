@@ -201,12 +201,104 @@ Temperatures temperatures(const Scene& scene, const matrix::Matrix& given, const
   return result;
 }
 
-// --- Files ---
+// --- Conditions ---
+
+namespace {
+
+// Takes one condition after another.
+class Conditions {
+ public:
+  explicit Conditions(const Scene& scene) : scene_(scene), patches_(patches_of(scene)) {
+    result_.patches.resize(patches_.size());
+  }
+
+  // Returns what is wrong with it.
+  [[nodiscard]] std::optional<Problem> add(const Condition& one) {
+    const auto& [t, q] = one.known;
+    if (t.has_value() == q.has_value()) {
+      return Problem{.what = t ? "there are both T and Q" : "there is neither T nor Q",
+                     .why = "one follows from the other",
+                     .suggestion = "give one of them, and leave the other one out"};
+    }
+    if (const double number = t ? *t : *q; !std::isfinite(number) || (t && number < 0.0)) {
+      return Problem{.what = (t ? "T is " : "Q is ") + text::shortest(number),
+                     .why = t ? "temperatures are in K" : "heats are finite, in W",
+                     .suggestion = t ? "add 273.15 to degrees Celsius" : "give a number"};
+    }
+    if (one.name == matrix::kBack || one.name == matrix::kOpen) {
+      (one.name == matrix::kBack ? result_.back : result_.open) = t.value_or(0.0);
+      if (!q) return std::nullopt;
+      return Problem{
+          .what = one.name + " has a Q", .why = "it is black, at a temperature", .suggestion = "give it a T"};
+    }
+    try {
+      return add_patches(one);
+    } catch (const InputError& error) {
+      return error.problems().front();
+    }
+  }
+
+  // Throws InputError, in `file` if that is not empty, for patches without a condition.
+  [[nodiscard]] ThermalConditions take(const std::filesystem::path& file) {
+    std::vector<std::string> missing;
+    for (std::size_t i = 0; i < patches_.size(); ++i) {
+      const Known& known = result_.patches[i];
+      if (!known.temperature && !known.heat && missing.size() < 4) missing.push_back(name_of(scene_, patches_[i]));
+    }
+    if (missing.size() > 3) missing.back() = "others";
+    if (missing.empty()) return std::move(result_);
+    const std::string none = text::enumerate(missing), why = "every patch has a temperature or gives off heat",
+                      advice = "give the Q 0 to a patch that only reflects and emits again";
+    if (file.empty()) text::refuse("neither T nor Q has " + none, why, advice);
+    text::refuse(file, "has no row for " + none, why, advice);
+  }
+
+ private:
+  std::optional<Problem> add_patches(const Condition& one) {
+    double area = 0.0;
+    std::vector<std::size_t> rows;
+    for (const Selection& patch : scene_.select_all(one.name)) {
+      const auto found = std::ranges::find(patches_, patch);
+      if (found == patches_.end()) {
+        return Problem{.what = text::in_quotes(one.name) + " is no patch",
+                       .why = "temperatures are of whole patches",
+                       .suggestion = "name a patch"};
+      }
+      rows.push_back(static_cast<std::size_t>(found - patches_.begin()));
+      area += area_of(scene_, patch);
+    }
+    for (const std::size_t row : rows) {
+      Known& known = result_.patches[row];
+      if (known.temperature || known.heat) {
+        return Problem{.what = name_of(scene_, patches_[row]) + " has two rows",
+                       .why = "one of them would be ignored",
+                       .suggestion = "remove one"};
+      }
+      known = one.known;
+      if (known.heat && rows.size() > 1) *known.heat *= area_of(scene_, patches_[row]) / area;
+    }
+    return std::nullopt;
+  }
+
+  const Scene& scene_;
+  std::vector<Selection> patches_;
+  ThermalConditions result_;
+};
+
+}  // namespace
+
+ThermalConditions conditions_of(const Scene& scene, std::span<const Condition> all) {
+  Conditions conditions(scene);
+  std::vector<Problem> problems;
+  for (const Condition& one : all) {
+    if (std::optional<Problem> problem = conditions.add(one)) problems.push_back(std::move(*problem));
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return conditions.take({});
+}
 
 ThermalConditions read_conditions(const Scene& scene, const std::filesystem::path& file) {
-  const std::vector<Selection> patches = patches_of(scene);
-  ThermalConditions conditions;
-  conditions.patches.resize(patches.size());
+  Conditions conditions(scene);
   text::CsvLines lines(file, "a CSV file with the columns patch, T, Q");
   text::CsvDialect dialect;
   text::ProblemList problems;
@@ -219,46 +311,19 @@ ThermalConditions read_conditions(const Scene& scene, const std::filesystem::pat
     const auto at = static_cast<std::size_t>(found - head.begin());
     return at < fields.size() ? fields[at] : std::string();
   };
-  const auto take = [&](const std::string& name, std::optional<double> t, std::optional<double> q) {
-    if (name == matrix::kBack || name == matrix::kOpen) {
-      (name == matrix::kBack ? conditions.back : conditions.open) = t.value_or(0.0);
-      if (q) complain(name + " has a Q", "it is black, at a temperature", "give it a T");
-      return;
-    }
-    double area = 0.0;
-    std::vector<std::size_t> rows;
-    for (const Selection& one : scene.select_all(name)) {
-      const auto found = std::ranges::find(patches, one);
-      if (found == patches.end()) {
-        return complain(text::in_quotes(name) + " is no patch", "temperatures are of whole patches", "name a patch");
+  const auto add_row = [&] {
+    Condition one{field("patch"), {}};
+    for (const auto& [name, known] : {std::pair("T", &one.known.temperature), std::pair("Q", &one.known.heat)}) {
+      const std::string text = field(name);
+      if (text.empty()) continue;
+      const text::ParsedNumber number = dialect.number(text);
+      if (number.fault != text::NumberFault::kNone) {
+        return complain(describe(number.fault, text), "T and Q are numbers", advice(number.fault));
       }
-      rows.push_back(static_cast<std::size_t>(found - patches.begin()));
-      area += area_of(scene, one);
+      *known = number.value;
     }
-    for (const std::size_t row : rows) {
-      Known& known = conditions.patches[row];
-      if (known.temperature || known.heat) {
-        return complain(name_of(scene, patches[row]) + " has two rows", "one of them would be ignored", "remove one");
-      }
-      known = {t, q ? std::optional(rows.size() == 1 ? *q : *q * (area_of(scene, patches[row]) / area)) : std::nullopt};
-    }
-  };
-  const auto take_line = [&](const std::string& name, const std::string& t, const std::string& q) {
-    if (t.empty() == q.empty()) {
-      return complain(t.empty() ? "there is neither T nor Q" : "there are both T and Q", "one follows from the other",
-                      "give one of them, and leave the other field empty");
-    }
-    const text::ParsedNumber number = dialect.number(t.empty() ? q : t);
-    if (number.fault != text::NumberFault::kNone) {
-      return complain(describe(number.fault, t.empty() ? q : t), "T and Q are numbers", advice(number.fault));
-    }
-    if (!t.empty() && number.value < 0.0) {
-      return complain("T is " + text::shortest(number.value), "temperatures are in K", "add 273.15 to degrees Celsius");
-    }
-    try {
-      t.empty() ? take(name, {}, number.value) : take(name, number.value, {});
-    } catch (const InputError& error) {
-      for (const Problem& problem : error.problems()) complain(problem.what, problem.why, problem.suggestion);
+    if (std::optional<Problem> problem = conditions.add(one)) {
+      complain(std::move(problem->what), std::move(problem->why), std::move(problem->suggestion));
     }
   };
   for (std::string_view line; lines.next(line);) {
@@ -274,20 +339,14 @@ ThermalConditions read_conditions(const Scene& scene, const std::filesystem::pat
       complain("the first line has not the columns patch, T, Q", "they say what the numbers are", "write patch,T,Q");
       break;
     } else {
-      take_line(field("patch"), field("T"), field("Q"));
+      add_row();
     }
   }
   problems.throw_if_any();
-  std::vector<std::string> missing;
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    const Known& known = conditions.patches[i];
-    if (!known.temperature && !known.heat && missing.size() < 4) missing.push_back(name_of(scene, patches[i]));
-  }
-  if (missing.size() > 3) missing.back() = "others";
-  if (missing.empty()) return conditions;
-  text::refuse(file, "has no row for " + text::enumerate(missing), "every patch has a temperature or gives off heat",
-               "write the Q 0 for a patch that only reflects and emits again");
+  return conditions.take(file);
 }
+
+// --- Files ---
 
 table::Table table_of(const Scene& scene, const Temperatures& found, const ViewFactorOptions& options) {
   using table::Strength;

@@ -433,9 +433,14 @@ TEST(Matrix, TheTwinOfABentFaceIsItsTrianglesTurnedRound) {
 
 // --- Files ---
 
+std::string text_of(std::string_view name, const Scene& scene, const Matrix& matrix, const std::string& zone = "zone") {
+  const ProgramFormat& format = *std::ranges::find(program_formats(), name, &ProgramFormat::name);
+  return files_of(format, square_of(format, scene, matrix, zone), "file").front().second;
+}
+
 TEST(MatrixFiles, OfView3DAreItsOwn) {
   const Scene scene = generate::build(open_box());
-  const std::string text = view3d_text(scene, compute(scene, all_of(scene), all_of(scene)));
+  const std::string text = text_of("view3d", scene, compute(scene, all_of(scene), all_of(scene)));
   EXPECT_EQ(text.substr(0, text.find('\n')).size(), 30U);
   EXPECT_EQ(text.substr(text.find('\n')),
             "\n1 1 1 1 1\n"
@@ -446,8 +451,8 @@ TEST(MatrixFiles, OfView3DAreItsOwn) {
             "0.200044 0.200044 0.200044 0.199825 0.000000\n"
             "0.000 0.000 0.000 0.000 0.000\n");
   const Matrix row = compute(scene, std::vector{scene.select("floor")}, all_of(scene), {.factors = {.accuracy = 0.1}});
-  EXPECT_THROW((void)view3d_text(scene, row), InputError);
-  EXPECT_THROW((void)energyplus_text(scene, row, "zone"), InputError);
+  EXPECT_THROW((void)text_of("view3d", scene, row), InputError);
+  EXPECT_THROW((void)text_of("energyplus", scene, row, "zone"), InputError);
 }
 
 TEST(MatrixFiles, OfEnergyPlusHoldNamesAndEveryDigit) {
@@ -456,20 +461,20 @@ TEST(MatrixFiles, OfEnergyPlusHoldNamesAndEveryDigit) {
   add(plain, "above", square(1.0, 1.0), true);
   const Scene scene = generate::build(plain);
   const Matrix matrix = compute(scene, all_of(scene), all_of(scene));
-  const std::string text = energyplus_text(scene, matrix, "Zone 7");
+  const std::string text = text_of("energyplus", scene, matrix, "Zone 7");
   EXPECT_EQ(text.find("! exactff "), 0U);
   EXPECT_NE(
       text.find(
           "\nZoneProperty:UserViewFactors:bySurfaceName,\n  Zone 7,\n  below, below, 0,\n  below, above, 0.19982"),
       std::string::npos);
   EXPECT_EQ(text.substr(text.size() - 21), ",\n  above, above, 0;\n");
-  EXPECT_THROW((void)energyplus_text(scene, matrix, "a;b"), InputError);
-  EXPECT_THROW((void)energyplus_text(scene, matrix, ""), InputError);
+  EXPECT_THROW((void)text_of("energyplus", scene, matrix, "a;b"), InputError);
+  EXPECT_THROW((void)text_of("energyplus", scene, matrix, ""), InputError);
   for (const char* name : {"a,b", "a!b", " a", "Below"}) {
     PlainScene odd = plain;
     odd.patches[1].name = name;
     const Scene built = generate::build(odd);
-    EXPECT_THROW((void)energyplus_text(built, compute(built, all_of(built), all_of(built)), "zone"), InputError)
+    EXPECT_THROW((void)text_of("energyplus", built, compute(built, all_of(built), all_of(built)), "zone"), InputError)
         << name;
   }
 }

@@ -21,12 +21,13 @@ namespace {
 class ProgramFiles : public testing::Test {
  protected:
   void SetUp() override {
-    const validation::ProgramRun run =
-        validation::run_exactff({"matrix", scene_, "--balance", "--accuracy", "1e-3", "--openfoam", file("F"),
-                                 "--calculix", file("m.vwf"), "--moose", file("moose.txt"), "--nek", file("nek"),
-                                 "--esatan", file("e.gr"), "--exchange", file("b.csv"), "-o", file("m.csv")});
+    const validation::ProgramRun run = validation::run_exactff(
+        {"matrix",     scene_,        "--balance",   "--accuracy",      "1e-3",        "--openfoam", file("F"),
+         "--calculix", file("m.vwf"), "--moose",     file("moose.txt"), "--nek",       file("nek"),  "--esatan",
+         file("e.gr"), "--view3d",    file("v.out"), "--energyplus",    file("z.idf"), "--exchange", file("b.csv"),
+         "-o",         file("m.csv")});
     ASSERT_EQ(run.exit_code, 0) << run.error;
-    EXPECT_NE(run.output.find("coarse face k of the case must be patch k"), std::string::npos);
+    EXPECT_NE(run.output.find("(without bounds and names; patches must be in the order of"), std::string::npos);
     const table::Table table = table::read(file("m.csv"));
     const std::vector<double>& balanced = table.numbers(table.column("balanced").value());
     for (std::size_t i = 0; i < kPatches; ++i) {
@@ -52,6 +53,9 @@ class ProgramFiles : public testing::Test {
 TEST_F(ProgramFiles, HoldTheBalancedMatrixToTheLastBit) {
   EXPECT_EQ(read("F"), values_);
   EXPECT_EQ(read("m.vwf"), values_);
+  EXPECT_EQ(read("z.idf"), values_);
+  const std::vector<double> six_decimals = read("v.out");
+  for (std::size_t k = 0; k < values_.size(); ++k) EXPECT_NEAR(six_decimals[k], values_[k], 5.01e-7);
 
   std::istringstream moose(validation::text_of(file("moose.txt")));
   std::string line;
@@ -84,6 +88,22 @@ TEST_F(ProgramFiles, HoldTheBalancedMatrixToTheLastBit) {
   }
   EXPECT_TRUE(nek.good());
   EXPECT_EQ(found, values_);
+}
+
+// A patch of the mesh has one coarse face; by --patches faces, each of its faces is one.
+TEST_F(ProgramFiles, HoldTheAgglomerationOfOpenFoam) {
+  const auto lists_of = [&](const std::vector<std::string>& flags) {
+    std::vector<std::string> all{"matrix", scene_, "--accuracy", "0.1", "--openfoam", file("F"), "--force"};
+    all.insert(all.end(), flags.begin(), flags.end());
+    EXPECT_EQ(validation::run_exactff(all).exit_code, 0);
+    const std::string text = validation::text_of(file("finalAgglom"));
+    return text.substr(text.find("}\n\n") + 3);
+  };
+  EXPECT_EQ(lists_of({"--from", "srf-1,srf-7", "--to", "srf-1,srf-7"}), "2\n(\n1(0)\n3(0 0 0)\n)\n");
+  EXPECT_EQ(lists_of({"--patches", "faces", "--from", "srf-1:1,srf-7:*", "--to", "srf-1:1,srf-7:*"}),
+            "2\n(\n1(0)\n3(0 1 2)\n)\n");
+  const std::string map = validation::text_of(file("mapDist"));
+  EXPECT_EQ(map.substr(map.find("}\n\n") + 3), "4\n1(4(0 1 2 3))\n1(4(0 1 2 3))\n0 0\n0()\n0()\n");
 }
 
 TEST_F(ProgramFiles, HoldTheConductors) {

@@ -39,8 +39,8 @@ from ._check import (check, CheckReport, Distribution, Improvement, RowError, sc
 from ._geometry import Contact, Finding, Material, Patch, Receivers, Report
 from ._pair import DerivativeStatus, Drawing, Enclosure, FormFactor, FormFactors, Gradient, Status, VertexGradient
 from ._scene import Scene
-from ._views import (Balance, ExchangeFactors, PairOfPatches, radiosity, Radiosity, Reciprocity, SeenPatch, Share, View, view,
-                     view_factor, view_factor_matrix, ViewFactor, ViewFactorMatrix)
+from ._views import (Balance, ExchangeFactors, PairOfPatches, radiosity, Radiosity, Reciprocity, SeenPatch, Share, Temperatures, View,
+                     view, view_factor, view_factor_matrix, ViewFactor, ViewFactorMatrix)
 
 __version__ = _exactff.version
 
@@ -48,7 +48,7 @@ __all__ = [
     "Balance", "CheckReport", "Contact", "DerivativeStatus", "Distribution", "Drawing", "Enclosure", "Finding", "FormFactor",
     "ExchangeFactors", "FormFactors", "Gradient", "Improvement", "InputError", "Material", "ModellingWarning", "PairOfPatches", "Patch", "Problem", "Radiosity", "Receivers",
     "Reciprocity", "Report", "RowError",
-    "Scene", "Scoreboard", "SeenPatch", "Share", "Status", "TruthSummary", "Verdict", "VertexGradient", "View", "ViewFactor", "ViewFactorMatrix",
+    "Scene", "Scoreboard", "SeenPatch", "Share", "Status", "Temperatures", "TruthSummary", "Verdict", "VertexGradient", "View", "ViewFactor", "ViewFactorMatrix",
     "__version__", "check", "methods", "radiosity", "scoreboard", "truth", "view", "view_factor",
     "view_factor_matrix",
 ]

@@ -16,7 +16,9 @@ from ._scene import On, Scene
 
 
 _MOST_BITS = 1 << 24
-_MATRIX_FILES = (".csv", ".npz", ".idf", ".out", ".vtp", ".vtu")
+# Name and extension.
+_MATRIX_FILES = (("csv", ".csv"), ("npz", ".npz"), ("vtk", ".vtp"), ("vtk", ".vtu"),
+                 *((name, extension) for name, extension, _ in _exactff.matrix_formats))
 
 
 class ViewFactor(NamedTuple):
@@ -89,34 +91,47 @@ class ViewFactorMatrix:
                 raise KeyError(name)
         return self._entries[self.from_names.index(names[0])][self.to_names.index(names[1])]
 
-    def save(self, path: Path, *, existing: Literal["refuse", "replace"] = "refuse", zone: str = "Zone 1") -> None:
-        """Writes the matrix to a file, as ``exactff matrix`` does. The extension says which:
+    def save(self, path: Path, *, format: Optional[str] = None, existing: Literal["refuse", "replace"] = "refuse",
+             zone: str = "Zone 1") -> None:
+        """Writes the matrix to a file, as ``exactff matrix`` does. The extension says which, or `format`:
 
-        - ``.csv``: names, values, bounds, claims, areas; doubles read back to the same bits
-        - ``.npz``: a sparse matrix for ``scipy.sparse.load_npz``, with names, areas, radii, claims
-        - ``.idf``: EnergyPlus' ``ZoneProperty:UserViewFactors:bySurfaceName``, for `zone`; rows and columns must be the same
-        - ``.out``: View3D's output, six decimals; rows and columns must be the same
-        - ``.vtp``, ``.vtu``: the one row as values on the scene, for ParaView
+        - "csv": names, values, bounds, claims, areas; doubles read back to the same bits
+        - "npz": a sparse matrix for ``scipy.sparse.load_npz``, with names, areas, radii, claims; if balanced, also with
+          ``factor``, the values before that
+        - "vtk" (``.vtp``, ``.vtu``): the one row as values on the scene, for ParaView
+        - "energyplus" (``.idf``): ``ZoneProperty:UserViewFactors:bySurfaceName``, for `zone`
+        - "view3d" (``.out``): its output, six decimals
+        - "openfoam": F, with globalFaceFaces, finalAgglom and mapDist beside it; patches in the order of the mesh
+        - "calculix" (``.vwf``), "moose", "nek" (Nek5000, NekRS): patches by number, in the order of the rows
+        - "esatan" (``.gr``): conductors of :meth:`exchange`, with names in comments
 
-        A file appears complete or not at all. Raises InputError for another extension, for a file that exists unless
-        ``existing="replace"``, always for a file that the scene was read from, and for ``.idf`` and ``.out`` if fronts of two
-        patches overlap, since such rows exceed 1."""
+        Files of other programs hold no bounds, and need the same patches as rows and columns. A file appears complete or not
+        at all. Raises InputError for another extension or format, for a file that exists unless ``existing="replace"``,
+        always for a file that the scene was read from, and for other programs if fronts of two patches overlap, since such
+        rows exceed 1."""
         check_existing(existing)
         if self._made is None:
             refuse("the matrix was copied or pickled", "a copy has the numbers alone", "save the first one")
         extension = os.path.splitext(os.fspath(path))[1].lower()
-        if extension not in _MATRIX_FILES:
+        names = [name for name, known in _MATRIX_FILES if (known and known == extension if format is None else name == format)]
+        if format is None and not names:
             refuse(f"{os.fspath(path)}: no kind of matrix file has the extension {extension!r}",
-                   "the extension says what is written", f"name a file {', '.join(_MATRIX_FILES)}")
-        require_free(path, existing, self._read)
-        self._made.write(os.fspath(path), extension, zone)
+                   "the extension says what is written", "name a file "
+                   + ", ".join(known for _, known in _MATRIX_FILES if known) + ", or give a format")
+        if not names:
+            refuse(f"format is {format!r}", "it says what is written",
+                   "give " + ", ".join(dict.fromkeys(name for name, _ in _MATRIX_FILES)))
+        beside = _exactff.openfoam_files if names[0] == "openfoam" else ()
+        for file in (path, *(os.path.join(os.path.dirname(os.fspath(path)), name) for name in beside)):
+            require_free(file, existing, self._read)
+        self._made.write(os.fspath(path), names[0], zone)
 
     def balanced(self) -> ViewFactorMatrix:
         """The nearest matrix in which every value, also of ``back``, ``open`` and ``buried``, lies in its interval, and
 
         - ``areas[i] * value[i, j] == areas[j] * value[j, i]`` in every bit,
-        - the exact sum of a row, with ``back``, ``open`` and ``buried``, is 1 to within 2^-52, one ulp, or to a few
-          ulps in rows of two or three entries; ``math.fsum`` nearly always gives 1.0.
+        - the exact sum of a row, with ``back``, ``open`` and ``buried``, is 1 to within 2^-51, two ulps, and mostly
+          within one; ``math.fsum`` nearly always gives 1.0.
 
         Values depend neither on threads nor on the order of the patches, but on their names. Needs the same patches as rows
         and columns, with `backs` and `sky`. Raises InputError where rows need not add up to 1, with
@@ -167,6 +182,31 @@ class ViewFactorMatrix:
                                factors[..., 0], factors[..., 1], factors[..., 2], rest(1), rest(2), conductors[..., 0],
                                conductors[..., 1], conductors[..., 2], rest(4), rest(5), claim)
 
+    def temperatures(self, known: Mapping[str, float], heats: Mapping[str, float] = {}, *, save: Optional[Path] = None,
+                     existing: Literal["refuse", "replace"] = "refuse") -> Temperatures:
+        """Temperatures of gray, diffuse surfaces of emissivity 1 - Kd that exchange sigma T^4, as ``exactff radiosity
+        --temperatures`` solves for them, with bounds. The scene is in metres.
+
+        Parameters
+        ----------
+        known : temperatures in K by names of patches; also of "(back)" and "(open)", which are black, else at 0 K
+        heats : the heat in W that other patches give off, net; 0 for one that only reflects and emits again. What a
+            pattern names shares it by areas
+        save : a CSV, .npz or .jsonl file that is written
+
+        Needs the factors between all patches, with `backs` and `sky`. Values are by the values of the matrix: no heat is made
+        if it is balanced. Raises InputError for another matrix; for patches in neither or in both; for a Kd that differs
+        between channels or is above 1; where more heat is taken away than arrives; and where there is no bound."""
+        check_existing(existing)
+        if self._made is None:
+            refuse("the matrix was copied or pickled", "a copy has the numbers alone", "use the first one")
+        if save is not None:
+            require_free(save, existing, self._read)
+        t, q, areas, emissivities, rest, claim = self._made.temperatures(dict(known), dict(heats),
+                                                                         "" if save is None else os.fspath(save))
+        return Temperatures(self.from_names, areas, emissivities, t[:, 0], t[:, 1], t[:, 2], q[:, 0], q[:, 1], q[:, 2],
+                            rest[0], rest[1], rest[2], claim)
+
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_made": None}
 
@@ -196,6 +236,25 @@ class ExchangeFactors:
     conductors_to_back: Optional[Floats]  #: (c, n, 3)
     conductors_to_open: Optional[Floats]  #: (c, n, 3)
     claim: str  #: of the bounds: "zero", "certified" or "estimated"
+
+
+@dataclass(frozen=True)
+class Temperatures:
+    """Temperatures and heats of patches, with bounds as strong as ``claim``. Made by :meth:`ViewFactorMatrix.temperatures`."""
+
+    names: tuple[str, ...]
+    areas: Floats  #: (n,), without buried parts
+    emissivities: Floats  #: (n,), 1 - Kd
+    value: Floats  #: (n,), temperatures in K
+    lower: Floats  #: (n,)
+    upper: Floats  #: (n,)
+    heat: Floats  #: (n,), in W, given off, net
+    heat_lower: Floats  #: (n,)
+    heat_upper: Floats  #: (n,)
+    to_back: Floats  #: (3,): value, lower, upper of the heat that goes to backs of faces
+    to_open: Floats  #: (3,): of that which leaves
+    unbalanced: Floats  #: (3,): the sum of all heats less these two
+    claim: str  #: "zero", "certified" or "estimated"
 
 
 class Share(NamedTuple):
