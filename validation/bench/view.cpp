@@ -97,11 +97,13 @@ void contour(benchmark::State& state, const ViewScene& s) {
   whole_view::ViewEdges edges;
   const visibility::View from(s.scene, s.receiver);
   edges.find(from, whole_view::ViewEdges::Wholes::kFronts);
+  visibility::VisibleArcs arcs;
+  arcs.add(from, edges);
   exact::QuickTier quick;
   std::vector<kernel::double_double::Bounded> terms;
   for (auto _ : state) {
     quick.start(from.n);
-    quick.find_terms(edges, edges.parts(), terms);
+    quick.find_terms(arcs[0], terms);
     keep(terms.size());
   }
 }

@@ -14,7 +14,7 @@ storeys=(foundation scenes solver rivals products reports outside)
 # The room of a public header that is not named after it. Where a header serves several rooms of a storey, the lowest.
 declare -A home=(
   [enclosure]=kernel [geometry]=kernel [progress]=kernel [error]=text [settings]=text [version]=text
-  [scene_files]=formats [receiver]=receivers [exact]=visibility [view]=whole_view [testing]=check
+  [scene_files]=formats [receiver]=receivers [exact]=visibility [region]=exact [view]=whole_view [testing]=check
 )
 
 # Pairs of rooms of which the first must not include the second, not even through others.

@@ -100,6 +100,8 @@ Rows::Rows(Request request) : request_(completed(std::move(request))), columns_o
                    whole_view::light_weights(*request_.scene, *sources_, *request_.total, request_.scene_name));
   }
   columns_ = columns_of_request_.columns();
+  measures_ = request_.measures;
+  std::ranges::stable_partition(measures_, [](const Measure& measure) { return !measure.sphere; });
   describe(sentences(near_misses(*request_.scene, request_.receivers), request_.receivers.size()));
 }
 
@@ -183,17 +185,17 @@ void Rows::compute(std::uint64_t number_of_row, Results& results) const {
   row.upper = f.upper;
   row.status = f.status;  // a row is only as good as its worst value
   const auto keep_worst = [&](bool certified) { row.status = certified ? row.status : Status::kNotCertified; };
+  if (request_.visible_fraction) row.visible_fraction = f.visible_fraction.value_or(0.0);
+  for (const Measure& measure : measures_) {  // before other searches: they read what was found
+    const FormFactor& measured = find_measure(number, source, measure, results);
+    row.measures[measure_column(measure)] = measured.value;
+    keep_worst(measured.status != Status::kNotCertified);
+  }
   if (request_.unoccluded) {
     const FormFactor& free = without_occluders(receiver, source, f, results);
     row.unoccluded = free.value;
     row.unoccluded_status = free.status;
     keep_worst(free.status != Status::kNotCertified);
-  }
-  if (request_.visible_fraction) row.visible_fraction = f.visible_fraction.value_or(0.0);
-  for (const Measure& measure : request_.measures) {
-    const FormFactor& measured = find_measure(number, source, measure, results);
-    row.measures[measure_column(measure)] = measured.value;
-    keep_worst(measured.status != Status::kNotCertified);
   }
   if (request_.gradient) {
     row.kink = f.gradient->kink.has_value();
@@ -232,9 +234,12 @@ class RowComputer : public Rows::Computer {
 
 std::unique_ptr<Rows::Computer> Rows::computer() const { return std::make_unique<RowComputer>(*this); }
 
+ExactOptions Rows::options_of_factors() const {
+  return {.engine = request_.engine, .visible_fraction = request_.visible_fraction, .gradient = request_.gradient};
+}
+
 const FormFactor& Rows::factor(std::size_t receiver, std::size_t source, Results& results) const {
-  const ExactOptions options{
-      .engine = request_.engine, .visible_fraction = request_.visible_fraction, .gradient = request_.gradient};
+  const ExactOptions options = options_of_factors();
   if (!has_totals() && !sources_->sweeps(options)) {
     sources_->find_one(request_.receivers[receiver], source, options, results.exact, results.all.at);
     return results.exact;
@@ -245,13 +250,25 @@ const FormFactor& Rows::factor(std::size_t receiver, std::size_t source, Results
 
 const FormFactor& Rows::find_measure(std::size_t receiver, std::size_t source, const Measure& measure,
                                      Results& results) const {
+  const Receiver& at = request_.receivers[receiver];
   const ExactOptions options{.engine = request_.engine, .measure = measure};
   Results::Measured& found = results.measured[measure_column(measure)];
-  if (!sources_->sweeps(options)) {
-    sources_->find_one(request_.receivers[receiver], source, options, found.one, results.all.at);
+  const bool reads_found = !has_totals() && !measure.sphere && request_.engine != Engine::kBoth;
+  if (reads_found && !sources_->sweeps(options_of_factors())) {
+    sources_->measure_one(at, source, options, found.one, results.all.at);
     return found.one;
   }
-  if (found.known != receiver) sources_->find_all(request_.receivers[receiver], options, found.all, results.all.at);
+  if (!sources_->sweeps(options)) {
+    sources_->find_one(at, source, options, found.one, results.all.at);
+    return found.one;
+  }
+  if (found.known != receiver) {
+    if (reads_found) {
+      sources_->measure_all(at, options, found.all, results.all.at);
+    } else {
+      sources_->find_all(at, options, found.all, results.all.at);
+    }
+  }
   found.known = receiver;
   return found.all[source];
 }

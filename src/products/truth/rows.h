@@ -51,6 +51,7 @@ class Rows : public jobs::Rows {
  private:
   void describe(const std::vector<std::string>& near_misses);
   [[nodiscard]] std::string id(std::size_t receiver) const;
+  [[nodiscard]] ExactOptions options_of_factors() const;
   [[nodiscard]] const FormFactor& factor(std::size_t receiver, std::size_t source, Results& results) const;
   [[nodiscard]] bool has_totals() const { return light_ || gather_; }
   [[nodiscard]] const FormFactor& find_measure(std::size_t receiver, std::size_t source, const Measure& measure,
@@ -61,6 +62,7 @@ class Rows : public jobs::Rows {
                                                     const FormFactor& with, Results& results) const;
 
   Request request_;
+  std::vector<Measure> measures_;  // of the request; spheres last, since these need a search of their own
   std::unique_ptr<const whole_view::SourceFactors> sources_;
   std::vector<std::string> source_names_;
   std::vector<Rgb> radiosities_;                     // indexed by source

@@ -62,12 +62,6 @@ Ball ContourIntegral::evaluate(long bits) const {
 
 namespace {
 
-struct Integral {  // 2 I = theta factor + rest / |C|
-  ExactVec3 cross;
-  Integer squared_cross;
-  Rational factor, rest;
-};
-
 Rational ratio(const Integer& numerator, const Integer& denominator) {
   Rational result(numerator, denominator);
   result.canonicalize();
@@ -79,50 +73,45 @@ Rational end_term(const ExactVec3& p, const ExactVec3& n, const ExactVec3& c, co
   return ratio(dot(p, n), dot(p, p)) * dot(to_rational(c), cross(to_rational(p), g));
 }
 
-Integral integral_of(const MovingArc& arc, const ExactVec3& n) {
-  Integral result;
-  result.cross = cross(arc.begin, arc.end);
-  result.squared_cross = dot(result.cross, result.cross);
-  const RationalVec3& g = arc.nearness;
-  result.factor =
-      dot(to_rational(n), g) - ratio(dot(n, result.cross), result.squared_cross) * dot(to_rational(result.cross), g);
-  result.rest = end_term(arc.begin, n, result.cross, g) - end_term(arc.end, n, result.cross, g);
-  return result;
-}
-
 }  // namespace
 
-void ArcSum::add(const MovingArc& arc, Rational factor, Rational rest) {
-  if (sign(factor) == 0 && sign(rest) == 0) return;
-  const ExactVec3 c = cross(arc.begin, arc.end);
-  terms_.push_back({dot(c, c), dot(arc.begin, arc.end), std::move(factor), std::move(rest)});
-  EXACTFF_EXPECT(sign(terms_.back().squared_cross) > 0);
+ArcIntegral::ArcIntegral(const MovingArc& arc, const ExactVec3& n)
+    : cross(kernel::cross(arc.begin, arc.end)), squared_cross(dot(cross, cross)), ends_dot(dot(arc.begin, arc.end)) {
+  const RationalVec3& g = arc.nearness;
+  factor = dot(to_rational(n), g) - ratio(dot(n, cross), squared_cross) * dot(to_rational(cross), g);
+  rest = end_term(arc.begin, n, cross, g) - end_term(arc.end, n, cross, g);
 }
 
-void ArcSum::add_position(const MovingArc& arc, const ExactVec3& n, int axis) {
-  const Integral twice = integral_of(arc, n);
-  add(arc, -twice.factor * twice.cross[axis], -twice.rest * ratio(twice.cross[axis], twice.squared_cross));
+void ArcSum::add(Integer squared_cross, Integer ends_dot, Rational factor, Rational rest) {
+  if (sign(factor) == 0 && sign(rest) == 0) return;
+  EXACTFF_EXPECT(sign(squared_cross) > 0);
+  terms_.push_back({std::move(squared_cross), std::move(ends_dot), std::move(factor), std::move(rest)});
 }
+
+// weight / |C| 2 I.
+void ArcSum::add(const ArcIntegral& twice, const Rational& weight) {
+  add(twice.squared_cross, twice.ends_dot, twice.factor * weight, twice.rest * weight / Rational(twice.squared_cross));
+}
+
+void ArcSum::add_position(const ArcIntegral& twice, int axis) { add(twice, Rational(-twice.cross[axis])); }
 
 void ArcSum::add_normal(const MovingArc& arc, int axis) {
-  add(arc, Rational(-cross(arc.begin, arc.end)[axis]), Rational());
+  const ExactVec3 c = cross(arc.begin, arc.end);
+  add(dot(c, c), dot(arc.begin, arc.end), Rational(-c[axis]), Rational());
 }
 
 void ArcSum::add_weighted(const MovingArc& arc, const ExactVec3& n, const Rational& weight) {
-  const Integral twice = integral_of(arc, n);
-  add(arc, twice.factor * weight, twice.rest * weight / Rational(twice.squared_cross));
+  add(ArcIntegral(arc, n), weight);
 }
 
 void ArcSum::add_along(const MovingArc& arc, const ExactVec3& n, const ExactVec3& d) {
-  const Integral twice = integral_of(arc, n);
-  const Integer along = -dot(d, twice.cross);
-  add(arc, twice.factor * along, twice.rest * ratio(along, twice.squared_cross));
+  const ArcIntegral twice(arc, n);
+  add(twice, Rational(-dot(d, twice.cross)));
 }
 
 void ArcSum::add_gain(const MovingArc& arc, const ExactVec3& n, const ExactVec3& d) {
-  const Integral twice = integral_of(arc, n);
-  const Integer along = abs(dot(d, twice.cross));
-  add(arc, twice.factor * along, twice.rest * ratio(along, twice.squared_cross));
+  const ArcIntegral twice(arc, n);
+  add(twice, Rational(abs(dot(d, twice.cross))));
 }
 
 Ball ArcSum::evaluate(long bits) const {

@@ -75,6 +75,15 @@ struct MovingArc {
 // Joins arcs of one line where one ends and the next begins: afterwards the arcs depend on the visible region alone.
 [[nodiscard]] std::vector<MovingArc> joined(std::vector<MovingArc> arcs);
 
+// 2 I |C| = theta |C| A + B of an arc, as above.
+struct ArcIntegral {
+  ArcIntegral(const MovingArc& arc, const kernel::ExactVec3& n);
+  kernel::ExactVec3 cross;        // C
+  kernel::Integer squared_cross;  // |C|^2
+  kernel::Integer ends_dot;       // p . q
+  kernel::Rational factor, rest;  // A, B
+};
+
 // A sum over arcs of  c theta / |C| + rest,  c and rest rational.
 class ArcSum {
  public:
@@ -83,7 +92,7 @@ class ArcSum {
   // Encloses the sum, computed with `bits` bits.
   [[nodiscard]] Ball evaluate(long bits) const;
 
-  void add_position(const MovingArc& arc, const kernel::ExactVec3& n, int axis);
+  void add_position(const ArcIntegral& twice, int axis);
   void add_normal(const MovingArc& arc, int axis);
   // weight / |C| 2 I, where the arc's nearness may be any vector.
   void add_weighted(const MovingArc& arc, const kernel::ExactVec3& n, const kernel::Rational& weight);
@@ -99,7 +108,8 @@ class ArcSum {
     kernel::Rational factor;        // c
     kernel::Rational rest;
   };
-  void add(const MovingArc& arc, kernel::Rational factor, kernel::Rational rest);
+  void add(const ArcIntegral& arc, const kernel::Rational& weight);
+  void add(kernel::Integer squared_cross, kernel::Integer ends_dot, kernel::Rational factor, kernel::Rational rest);
 
   std::vector<Term> terms_;
 };

@@ -8,20 +8,16 @@ using contour::QuickContour;
 using contour::QuickCorner;
 using contour::QuickPiece;
 using kernel::double_double::Bounded;
-using visibility::CornerId;
-using visibility::EdgeCovers;
-using visibility::EdgeId;
-using visibility::Outlines;
-using visibility::Parameter;
+using visibility::Arc;
+using visibility::ArcCorner;
+using visibility::ArcLine;
+using visibility::ArcSection;
 
 namespace {
 
-QuickCorner quick_corner(Outlines& outlines, CornerId id) {
-  if (const auto vertex = outlines.vertex(id)) {
-    return contour::quick_corner(outlines.position(*vertex), outlines.x(), outlines.scale_exponent());
-  }
-  if (const QuickCorner* fine = outlines.fine(id)) return *fine;
-  return contour::quick_corner(outlines.exact(id));
+QuickCorner quick_corner(const ArcSection& seen, const ArcCorner& corner) {
+  if (corner.is_vertex()) return contour::quick_corner(seen.vertices[corner.p], seen.x, seen.scale_exponent);
+  return corner.is_fine ? seen.fine[corner.constructed] : contour::quick_corner(seen.exactly[corner.constructed]);
 }
 
 }  // namespace
@@ -33,23 +29,22 @@ void QuickTier::start(const Vec3& normal) {
   sum_ = {};
 }
 
-void QuickTier::add(const visibility::VisibleBoundary& boundary) {
-  if (boundary.empty()) return;
-  if (boundary.edges() == nullptr) {
-    declined_ = true;
+void QuickTier::add(const ArcSection& seen) {
+  if (seen.empty()) return;
+  if (seen.is_by_edges()) {
+    for_each_batch(seen, [&] { contour_.add(pieces_, lines_); });
   } else {
-    EdgeCovers& found = *boundary.edges();
-    for_each_batch(found, found.parts(), [&] { contour_.add(pieces_, lines_); });
+    declined_ = true;
   }
 }
 
-void QuickTier::add(const visibility::VisibleBoundary& boundary, const Measure& measure, const Vec3& normal) {
-  if (boundary.empty()) return;
-  if (boundary.edges() == nullptr) {
+void QuickTier::add(const ArcSection& seen, const Measure& measure) {
+  if (seen.empty()) return;
+  if (!seen.is_by_edges()) {
     declined_ = some_are_unsure_ = true;
     return;
   }
-  find_terms(*boundary.edges(), boundary.edges()->parts(), measure, normal, terms_);
+  find_terms(seen, measure, terms_);
   std::array<Bounded, 4> sums{};  // four, so that an addition need not wait for the one before
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     const Bounded& term = terms_[i];
@@ -60,68 +55,69 @@ void QuickTier::add(const visibility::VisibleBoundary& boundary, const Measure& 
   sum_ = sum_ + ((sums[0] + sums[1]) + (sums[2] + sums[3]));
 }
 
-// Neighbouring parts share lines, so recent lines are worth keeping; all lines together would not fit into the cache.
+// Neighbouring arcs share lines, so recent lines are worth keeping; all lines together would not fit into the cache.
 // Calls take() after each batch.
 template <class Take>
-void QuickTier::for_each_batch(EdgeCovers& found, std::span<const EdgeCovers::Part> parts, const Take& take) {
-  static_assert(Parameter::kAtBegin == QuickPiece::kAtA && Parameter::kAtEnd == QuickPiece::kAtB);
+void QuickTier::for_each_batch(const ArcSection& seen, const Take& take) {
+  static_assert(Arc::kAtA == QuickPiece::kAtA && Arc::kAtB == QuickPiece::kAtB);
   constexpr std::size_t kBatch = 64, kMostLines = 8192;
-  Outlines& outlines = found.outlines();
   corners_.clear();
-  corner_index_.clear(outlines.corner_count());
-  line_index_.clear(outlines.edges().size());
   forget_lines();
-  const auto end = [&](EdgeId line) { return line < Parameter::kAtBegin ? number_of_line(outlines, line) : line; };
-  while (!parts.empty()) {
-    if (edges_.size() >= kMostLines) forget_lines();
-    // a. Number the lines and corners of a batch.
-    const std::size_t count = std::min(kBatch, parts.size());
+  if (seen.arcs.size() <= kBatch) {  // one batch, with the numbers that its lines have already
     pieces_.clear();
-    for (const EdgeCovers::Part& part : parts.first(count)) {
-      pieces_.push_back({number_of_line(outlines, part.edge), end(part.begin.line), end(part.end.line)});
+    for (const Arc& arc : seen.arcs) pieces_.push_back({arc.line, arc.begin, arc.end});
+    for (const ArcLine& line : seen.lines) edges_.push_back({line.a, line.b});
+    for (const ArcCorner& corner : seen.corners) corners_.push_back(quick_corner(seen, corner));
+    make_lines();
+    return take();
+  }
+  line_index_.clear(seen.lines.size());
+  const auto end = [&](std::uint32_t line) { return line < Arc::kAtA ? number_of_line(seen, line) : line; };
+  for (std::span<const Arc> arcs = seen.arcs; !arcs.empty();) {
+    if (edges_.size() >= kMostLines) forget_lines();
+    // a. Number the lines of a batch.
+    const std::size_t count = std::min(kBatch, arcs.size());
+    pieces_.clear();
+    for (const Arc& arc : arcs.first(count)) {
+      pieces_.push_back({number_of_line(seen, arc.line), end(arc.begin), end(arc.end)});
     }
     // b. Make the lines that are new.
     make_lines();
-    // c. Add the parts.
+    // c. Add the arcs.
     take();
-    parts = parts.subspan(count);
+    arcs = arcs.subspan(count);
   }
 }
 
-void QuickTier::find_terms(EdgeCovers& found, std::span<const EdgeCovers::Part> parts, std::vector<Bounded>& terms) {
-  terms.resize(parts.size());
+void QuickTier::find_terms(const ArcSection& seen, std::vector<Bounded>& terms) {
+  terms.resize(seen.arcs.size());
   std::size_t done = 0;
-  for_each_batch(found, parts, [&] {
+  for_each_batch(seen, [&] {
     contour_.find_terms(pieces_, lines_, std::span(terms).subspan(done, pieces_.size()));
     done += pieces_.size();
   });
 }
 
-void QuickTier::find_terms(EdgeCovers& found, std::span<const EdgeCovers::Part> parts, const Measure& measure,
-                           const Vec3& normal, std::vector<Bounded>& terms) {
-  contour_ = QuickContour(normal);
-  if (!measure_.is_of(measure, normal)) measure_ = contour::QuickMeasure(measure, normal);
+void QuickTier::find_terms(const ArcSection& seen, const Measure& measure, std::vector<Bounded>& terms) {
+  contour_ = QuickContour(seen.n);
+  if (!measure_.is_of(measure, seen.n)) measure_ = contour::QuickMeasure(measure, seen.n);
   uses_measure_ = true;
-  terms.resize(parts.size());
+  terms.resize(seen.arcs.size());
   std::size_t done = 0;
-  for_each_batch(found, parts, [&] {
+  for_each_batch(seen, [&] {
     measure_.find_terms(pieces_, lines_, std::span(terms).subspan(done, pieces_.size()));
     done += pieces_.size();
   });
 }
 
-std::uint32_t QuickTier::number_of_line(Outlines& outlines, EdgeId id) {
-  const auto [number, is_new] = line_index_.find(id);
+// Corners are numbered in the order in which lines are first requested.
+std::uint32_t QuickTier::number_of_line(const ArcSection& seen, std::uint32_t line) {
+  const auto [number, is_new] = line_index_.find(line);
   if (is_new) {
-    const Outlines::Edge& edge = outlines.edge(id);
-    edges_.push_back({number_of_corner(outlines, edge.a), number_of_corner(outlines, edge.b)});
+    const auto& [a, b, outline, whole] = seen.lines[line];
+    edges_.push_back({a, b});
+    while (corners_.size() <= std::max(a, b)) corners_.push_back(quick_corner(seen, seen.corners[corners_.size()]));
   }
-  return number;
-}
-
-std::uint32_t QuickTier::number_of_corner(Outlines& outlines, CornerId id) {
-  const auto [number, is_new] = corner_index_.find(id);
-  if (is_new) corners_.push_back(quick_corner(outlines, id));
   return number;
 }
 

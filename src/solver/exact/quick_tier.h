@@ -1,10 +1,9 @@
-// Step 7 of the exact method (src/README.md), the first attempt at a certified value: translates the boundary that the
-// edge engine found into corners, lines and pieces, and integrates these in double-double arithmetic
-// (contour/quick_contour.h).
+// Step 8 of the exact method (src/README.md), the first attempt at a certified value: integrates the arcs that the edge
+// engine found (visibility/visible_arcs.h) in double-double arithmetic (contour/quick_contour.h).
 //
-//   a. Give numbers to the lines of a batch of parts, and to their corners.
+//   a. Give numbers to the lines of a batch of arcs.
 //   b. Make the lines that are new, four at a time.
-//   c. Add the parts to the contour integral.
+//   c. Add the arcs to the contour integral.
 #pragma once
 
 #include <algorithm>
@@ -20,39 +19,9 @@
 #include "contour/quick_measures.h"
 #include "exactff/exact.h"
 #include "kernel/ball.h"
-#include "visibility/plane_visibility.h"
+#include "visibility/visible_arcs.h"
 
 namespace exactff::exact {
-
-// --- Dense index ---
-
-// Numbers items from 0 in the order in which they are first requested.
-
-class DenseIndex {
- public:
-  // Forgets all items. From now on, item i is below `count`.
-  void clear(std::size_t count) {
-    first_ = next_ = 0;
-    number_.assign(count, kNone);
-  }
-  // The number of item i, and whether it is new.
-  struct Found {
-    std::uint32_t number;
-    bool is_new;
-  };
-  Found find(std::uint32_t i) {
-    const bool is_new = number_[i] == kNone || number_[i] < first_;
-    if (is_new) number_[i] = next_++;
-    return {number_[i] - first_, is_new};
-  }
-  // Starts again from 0, without clearing the table.
-  void restart() { first_ = next_; }
-
- private:
-  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-  std::uint32_t first_ = 0, next_ = 0;
-  std::vector<std::uint32_t> number_;
-};
 
 // --- Quick tier ---
 
@@ -63,23 +32,22 @@ class QuickTier {
   // Starts a new sum in the existing memory. `normal`: the receiver's.
   void start(const Vec3& normal);
 
-  // Adds the boundary of one plane's visible region. Declines what the Booleans found.
-  void add(const visibility::VisibleBoundary& boundary);
+  // Adds what is seen of one plane. Declines what the Booleans found.
+  void add(const visibility::ArcSection& seen);
 
-  // The same for another measure; `normal` as for MeasureIntegral::start. Between start() and ball().
-  void add(const visibility::VisibleBoundary& boundary, const Measure& measure, const Vec3& normal);
-  // Whether some of the parts added for a measure count. Not known if something was declined and nothing certainly
+  // The same for another measure. Between start() and ball().
+  void add(const visibility::ArcSection& seen, const Measure& measure);
+  // Whether some of the arcs added for a measure count. Not known if something was declined and nothing certainly
   // counts.
   [[nodiscard]] std::optional<bool> something_counts() const {
     return some_count_ ? std::optional(true) : some_are_unsure_ ? std::nullopt : std::optional(false);
   }
 
-  // The term of each of these parts in Eq. (4), to be added by the caller.
-  void find_terms(visibility::EdgeCovers& found, std::span<const visibility::EdgeCovers::Part> parts,
-                  std::vector<kernel::double_double::Bounded>& terms);
+  // The term of each arc in Eq. (4), to be added by the caller.
+  void find_terms(const visibility::ArcSection& seen, std::vector<kernel::double_double::Bounded>& terms);
   // The same for another measure.
-  void find_terms(visibility::EdgeCovers& found, std::span<const visibility::EdgeCovers::Part> parts,
-                  const Measure& measure, const Vec3& normal, std::vector<kernel::double_double::Bounded>& terms);
+  void find_terms(const visibility::ArcSection& seen, const Measure& measure,
+                  std::vector<kernel::double_double::Bounded>& terms);
   // Encloses F, or the measure of the last call of find_terms, for a sum of terms.
   [[nodiscard]] Ball ball(const kernel::double_double::Bounded& sum) const;
 
@@ -89,10 +57,8 @@ class QuickTier {
 
  private:
   template <class Take>
-  void for_each_batch(visibility::EdgeCovers& found, std::span<const visibility::EdgeCovers::Part> parts,
-                      const Take& take);
-  [[nodiscard]] std::uint32_t number_of_line(visibility::Outlines& outlines, visibility::EdgeId id);
-  [[nodiscard]] std::uint32_t number_of_corner(visibility::Outlines& outlines, visibility::CornerId id);
+  void for_each_batch(const visibility::ArcSection& seen, const Take& take);
+  [[nodiscard]] std::uint32_t number_of_line(const visibility::ArcSection& seen, std::uint32_t line);
   void make_lines();
   void forget_lines();
 
@@ -105,7 +71,7 @@ class QuickTier {
   kernel::double_double::Bounded sum_;
   bool some_count_ = false, some_are_unsure_ = false;
   // Of the current plane.
-  DenseIndex corner_index_, line_index_;
+  visibility::DenseIndex line_index_;
   std::vector<contour::QuickCorner> corners_;
   std::vector<contour::QuickEdge> edges_;
   std::vector<contour::QuickLine> lines_;  // valid for the first `made_` edges; the rest is spare memory

@@ -2,12 +2,9 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
-#include "exact/quick_tier.h"
+#include "exact/region.h"
 #include "exactff/exact.h"
-#include "gradient/gradient.h"
-#include "gradient/vertex_gradient.h"
 #include "visibility/edge_workspace.h"
 
 namespace exactff {
@@ -19,11 +16,7 @@ struct Workspace::Memory {
   };
 
   visibility::EdgeWorkspace edges;
-  exact::QuickTier quick;
-  std::unique_ptr<gradient::PointGradient> gradient;   // made where one is asked for
-  std::unique_ptr<gradient::VertexGradient> vertices;  // likewise
-  // Sources differ in their number of planes: records that one source does not need are kept for the next one.
-  std::vector<PlaneRecord> spare_records;
+  exact::Region region;         // the last one
   std::unique_ptr<Guest> view;  // of the whole view
 };
 

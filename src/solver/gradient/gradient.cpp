@@ -13,14 +13,13 @@ using kernel::ExactVec3;
 using kernel::Rational;
 using kernel::RationalVec3;
 using kernel::to_rational;
+using visibility::Arc;
+using visibility::ArcCorner;
+using visibility::ArcLine;
+using visibility::ArcSection;
 using visibility::BoundaryPiece;
-using visibility::CornerId;
-using visibility::EdgeCovers;
-using visibility::EdgeId;
 using visibility::Outlines;
-using visibility::Parameter;
 using visibility::PlaneQuery;
-using visibility::VisibleBoundary;
 
 // --- Moving arcs ---
 
@@ -29,43 +28,6 @@ namespace {
 bool is_in_one_of(std::span<const SightResult> planes, const ExactVec3& normal) {
   return std::ranges::any_of(planes, [&](const SightResult& plane) { return is_zero(cross(plane.normal, normal)); });
 }
-
-class EdgeArcs {
- public:
-  EdgeArcs(const PlaneQuery& query, EdgeCovers& found) : x_(to_rational(query.view.x)), found_(found) {
-    const visibility::SourcePlane& plane = query.plane;
-    normal_ = to_rational(plane.normal.exact);
-    offset_ = dot(normal_, to_rational(plane.point) - x_);
-  }
-
-  void add(std::span<const SightResult> except, std::vector<MovingArc>& arcs) {
-    for (const EdgeCovers::Part& part : found_.parts()) {
-      kernel::poll();
-      const BoundaryPiece piece = found_.exact(part);
-      MovingArc arc{
-          piece.a * piece.begin.l + piece.b * piece.begin.m, piece.a * piece.end.l + piece.b * piece.end.m, {}};
-      const ExactVec3 pole = cross(arc.begin, arc.end);
-      if (is_zero(pole) || is_in_one_of(except, pole)) continue;
-      const Outlines::Edge& edge = found_.outlines().edge(part.edge);
-      const RationalVec3 a = point_at(edge.a), along = point_at(edge.b) - a, moment = cross(a, along);
-      arc.nearness = cross(along, moment) * Rational(1 / dot(moment, moment));
-      arcs.push_back(std::move(arc));
-    }
-  }
-
- private:
-  // Relative to x. A corner that is not a vertex lies in the source's plane.
-  [[nodiscard]] RationalVec3 point_at(CornerId corner) {
-    Outlines& outlines = found_.outlines();
-    if (const auto vertex = outlines.vertex(corner)) return to_rational(outlines.position(*vertex)) - x_;
-    const RationalVec3 direction = to_rational(outlines.exact(corner));
-    return direction * Rational(offset_ / dot(normal_, direction));
-  }
-
-  RationalVec3 x_, normal_;
-  Rational offset_;
-  EdgeCovers& found_;
-};
 
 // The arcs of the boundary in one plane through x, from one of its pieces. The profile is that of the query.
 void add_arcs_of_plane(const PlaneQuery& query, Profile& profile, const Outlines::Edge& edge,
@@ -76,31 +38,20 @@ void add_arcs_of_plane(const PlaneQuery& query, Profile& profile, const Outlines
   }
 }
 
-// Adds all arcs of the boundary, without their lines: those of V.
-void add_contour_arcs(const visibility::VisibleBoundary& boundary, std::vector<MovingArc>& arcs) {
-  boundary.for_each_piece([&](const BoundaryPiece& piece) {
-    MovingArc arc{piece.a * piece.begin.l + piece.b * piece.begin.m, piece.a * piece.end.l + piece.b * piece.end.m, {}};
-    if (!is_zero(cross(arc.begin, arc.end))) arcs.push_back(std::move(arc));
-  });
+MovingArc without_line(const BoundaryPiece& piece) {
+  return {piece.a * piece.begin.l + piece.b * piece.begin.m, piece.a * piece.end.l + piece.b * piece.end.m, {}};
 }
 
-// Adds the arcs of the boundary of one plane of the source, except those in the given planes through x.
-//
-// The edge engine's arcs come with their edges. Of the Booleans' boundary only the planes through x are used: the lines
-// in each plane are found again from what meets it (kinks.h). So the two ways share little.
-void add_moving_arcs(const PlaneQuery& query, const visibility::VisibleBoundary& boundary,
-                     std::span<const SightResult> except, std::vector<MovingArc>& arcs) {
-  if (boundary.empty()) return;
-  if (boundary.edges() != nullptr) {
-    EdgeArcs(query, *boundary.edges()).add(except, arcs);
-    return;
-  }
+// Of the Booleans' boundary only the planes through x are used: the lines in each plane are found again from what meets
+// it (kinks.h). The edge engine's arcs come with their lines. So the two ways share little.
+void add_moving_arcs_by_planes(const PlaneQuery& query, const ArcSection& seen, std::span<const SightResult> except,
+                               std::vector<MovingArc>& arcs) {
   visibility::BoundaryRequest request = query.request;
   request.culling = ShaftCulling::kTree;
   const PlaneQuery closed{query.view, query.plane, request};
   Profile profile;
   profile.gather(closed);
-  for_each_plane(boundary, query.view.normal().exact, [&](const ExactVec3& pole) {
+  for_each_plane(seen, query.view.normal().exact, [&](const ExactVec3& pole) {
     if (!is_in_one_of(except, pole)) add_arcs_of_plane(closed, profile, profile.edge_in_plane(pole), arcs);
   });
 }
@@ -146,69 +97,34 @@ Ball over_turn_and_length(const kernel::ExactVec3& n, long bits) {
 
 // --- Quick arcs ---
 
-namespace {
-
-constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-
-}  // namespace
-
-void QuickArcs::add(const visibility::PlaneQuery& query, const visibility::VisibleBoundary& boundary) {
-  if (boundary.empty()) return;
-  if (boundary.edges() == nullptr) {
-    sum_.decline();
-    return;
-  }
-  translate(query, *boundary.edges());
-  const std::span lines = std::span(lines_).first(edges_.size());
-  sum_.add(pieces_, lines, boundary.edges()->outlines().scale_exponent());
+void QuickArcs::add(const ArcSection& seen) {
+  if (seen.empty()) return;
+  if (!seen.is_by_edges()) return sum_.decline();
+  make_lines(seen);
+  sum_.add(pieces_, lines_, seen.scale_exponent);
 }
 
-// Sets pieces_ and lines_.
-void QuickArcs::translate(const visibility::PlaneQuery& query, EdgeCovers& found) {
+// Sets pieces_ and lines_. Corners are relative to x; one that is not a vertex lies in the source's plane.
+void QuickArcs::make_lines(const ArcSection& seen) {
   using kernel::double_double::Bounded;
-  static_assert(Parameter::kAtBegin == QuickPiece::kAtA && Parameter::kAtEnd == QuickPiece::kAtB);
-  Outlines& outlines = found.outlines();
-  plane_ = &query.plane;
-  const QuickCorner s = contour::quick_corner(plane_->point, outlines.x(), outlines.scale_exponent());
-  offset_ = {};
-  for (int i = 0; i < 3; ++i) offset_ = offset_ + plane_->fine_normal[i] * Bounded{s.hi[i], s.lo[i], s.error};
-  number_.assign(outlines.edges().size(), kNone);
-  corner_number_.assign(outlines.corner_count(), kNone);
+  static_assert(Arc::kAtA == QuickPiece::kAtA && Arc::kAtB == QuickPiece::kAtB);
+  const QuickCorner s = contour::quick_corner(seen.plane->point, seen.x, seen.scale_exponent);
+  Bounded offset;  // of the source's plane, in the scale of its normal and of the corners
+  for (int i = 0; i < 3; ++i) offset = offset + seen.plane->fine_normal[i] * Bounded{s.hi[i], s.lo[i], s.error};
+  const auto point_at = [&](const ArcCorner& corner) {
+    if (corner.is_vertex()) return contour::quick_corner(seen.vertices[corner.p], seen.x, seen.scale_exponent);
+    const QuickCorner direction =
+        corner.is_fine ? seen.fine[corner.constructed] : contour::quick_corner(seen.exactly[corner.constructed]);
+    return contour::lifted(direction, seen.plane->fine_normal, offset);
+  };
+  pieces_.clear();
   edges_.clear();
   corners_.clear();
-  pieces_.clear();
-  const auto end = [&](EdgeId line) { return line < Parameter::kAtBegin ? number_of_line(outlines, line) : line; };
-  for (const EdgeCovers::Part& part : found.parts()) {
-    pieces_.push_back({number_of_line(outlines, part.edge), end(part.begin.line), end(part.end.line)});
-  }
+  for (const Arc& arc : seen.arcs) pieces_.push_back({arc.line, arc.begin, arc.end});
+  for (const ArcLine& line : seen.lines) edges_.push_back({line.a, line.b});
+  for (const ArcCorner& corner : seen.corners) corners_.push_back(point_at(corner));
   if (lines_.size() < edges_.size()) lines_.resize(edges_.size());
   sum_.make_lines(corners_, edges_, std::span(lines_).first(edges_.size()));
-}
-
-std::uint32_t QuickArcs::number_of_line(Outlines& outlines, EdgeId id) {
-  if (number_[id] != kNone) return number_[id];
-  const Outlines::Edge edge = outlines.edge(id);
-  number_[id] = static_cast<std::uint32_t>(edges_.size());
-  edges_.push_back({number_of_corner(outlines, edge.a), number_of_corner(outlines, edge.b)});
-  return number_[id];
-}
-
-std::uint32_t QuickArcs::number_of_corner(Outlines& outlines, CornerId id) {
-  if (corner_number_[id] == kNone) {
-    corner_number_[id] = static_cast<std::uint32_t>(corners_.size());
-    corners_.push_back(point_at(outlines, id));
-  }
-  return corner_number_[id];
-}
-
-// Relative to x. A corner that is not a vertex lies in the source's plane.
-QuickCorner QuickArcs::point_at(Outlines& outlines, CornerId corner) const {
-  if (const auto vertex = outlines.vertex(corner)) {
-    return contour::quick_corner(outlines.position(*vertex), outlines.x(), outlines.scale_exponent());
-  }
-  const QuickCorner* fine = outlines.fine(corner);
-  return contour::lifted(fine != nullptr ? *fine : contour::quick_corner(outlines.exact(corner)), plane_->fine_normal,
-                         offset_);
 }
 
 // --- Gradient ---
@@ -228,11 +144,11 @@ void PointGradient::start(const visibility::View& view, const Request& request) 
   contour_arcs_.clear();
 }
 
-void PointGradient::add(const PlaneQuery& query, const VisibleBoundary& boundary) {
-  something_visible_ = something_visible_ || !boundary.empty();
-  quick_.add(query, boundary);
+void PointGradient::add(const PlaneQuery& query, const ArcSection& seen) {
+  something_visible_ = something_visible_ || !seen.empty();
+  quick_.add(seen);
   if (kink_ && !along_) return;
-  search_.find(query, !boundary.empty(), along_ ? KinkSearch::Extent::kAll : KinkSearch::Extent::kFirst);
+  search_.find(query, !seen.empty(), along_ ? KinkSearch::Extent::kAll : KinkSearch::Extent::kFirst);
   if (search_.kink() && (!kink_ || search_.kink()->reason == KinkReason::kOnFace)) kink_ = search_.kink();
   if (along_) kinks_.push_back(search_.planes());
 }
@@ -278,15 +194,31 @@ bool PointGradient::finish(int cap, Gradient& result) {
       take(quick_.sum().position(axis), result.position[axis]);
     }
   }
+  const auto is_open = [](const Derivative& derivative) { return derivative.status == DerivativeStatus::kEnclosed; };
+  opens_normal_ = std::ranges::any_of(result.normal, is_open);
+  opens_lines_ = along_ || list_arcs_ || std::ranges::any_of(result.position, is_open);
   return done;
 }
 
-void PointGradient::add_exactly(const PlaneQuery& query, const VisibleBoundary& boundary) {
+void PointGradient::add_exactly(const PlaneQuery& query, const ArcSection& seen) {
   const std::size_t plane = exact_planes_++;
   const std::span<const SightResult> except =
       plane < kinks_.size() ? std::span<const SightResult>(kinks_[plane]) : std::span<const SightResult>();
-  add_contour_arcs(boundary, contour_arcs_);
-  if (!kink_ || along_) add_moving_arcs(query, boundary, except, arcs_);
+  const bool moves = opens_lines_ && (!kink_ || along_);
+  const visibility::ExactArcs exact(seen);
+  const auto add = [&](const BoundaryPiece& piece, const Arc* with_line) {
+    kernel::poll();
+    MovingArc arc = without_line(piece);
+    const ExactVec3 pole = cross(arc.begin, arc.end);
+    if (is_zero(pole)) return;
+    if (opens_normal_) contour_arcs_.push_back(arc);
+    if (with_line == nullptr || !moves || is_in_one_of(except, pole)) return;
+    arc.nearness = exact.nearness(*with_line);
+    arcs_.push_back(std::move(arc));
+  };
+  for (const Arc& arc : seen.arcs) add(exact(arc), &arc);
+  for (const BoundaryPiece& piece : seen.pieces) add(piece, nullptr);
+  if (moves && !seen.is_by_edges()) add_moving_arcs_by_planes(query, seen, except, arcs_);
 }
 
 void PointGradient::list_arcs(const ExactVec3& n, Gradient& result) const {
@@ -299,10 +231,11 @@ void PointGradient::list_arcs(const ExactVec3& n, Gradient& result) const {
   const Ball factor =
       kernel::to_ball(1.0, kBits) / (twice(kernel::pi(kBits)) * sqrt(kernel::to_ball(dot(n, n), kBits)));
   for (const MovingArc& arc : arcs_) {
+    const contour::ArcIntegral integral(arc, n);
     double part[3];
     for (int axis = 0; axis < 3; ++axis) {
       ArcSum one;
-      one.add_position(arc, n, axis);
+      one.add_position(integral, axis);
       part[axis] = kernel::nearest_to_midpoint(one.evaluate(kBits) * factor);
     }
     result.arcs.push_back({point(arc.begin, arc.nearness), point(arc.end, arc.nearness), {part[0], part[1], part[2]}});
@@ -319,10 +252,14 @@ void PointGradient::certify(int cap, Gradient& result) {
   };
   arcs_ = joined(std::move(arcs_));
   contour_arcs_ = joined(std::move(contour_arcs_));
+  std::vector<contour::ArcIntegral> integrals;
+  if (opens_lines_ && !kink_) {
+    for (const MovingArc& arc : arcs_) integrals.emplace_back(arc, n);
+  }
   for (int axis = 0; axis < 3; ++axis) {
     if (result.position[axis].status == DerivativeStatus::kEnclosed) {
       ArcSum sum;
-      for (const MovingArc& arc : arcs_) sum.add_position(arc, n, axis);
+      for (const contour::ArcIntegral& integral : integrals) sum.add_position(integral, axis);
       gradient::certify(sum, over_length(n), cap, result.position[axis]);
     }
     if (result.normal[axis].status == DerivativeStatus::kEnclosed) {

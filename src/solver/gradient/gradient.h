@@ -16,7 +16,7 @@
 #include "exactff/exact.h"
 #include "gradient/kinks.h"
 #include "kernel/ball.h"
-#include "visibility/plane_visibility.h"
+#include "visibility/visible_arcs.h"
 
 namespace exactff::gradient {
 
@@ -28,9 +28,9 @@ namespace exactff::gradient {
 // Calls visit(pole) once for every plane through x in which the boundary has pieces, but for the receiver's horizon;
 // the pole is its primitive normal.
 template <class Visit>
-void for_each_plane(const visibility::VisibleBoundary& boundary, const kernel::ExactVec3& horizon, const Visit& visit) {
+void for_each_plane(const visibility::ArcSection& seen, const kernel::ExactVec3& horizon, const Visit& visit) {
   std::vector<kernel::ExactVec3> done;
-  boundary.for_each_piece([&](const visibility::BoundaryPiece& piece) {
+  seen.for_each_piece([&](const visibility::BoundaryPiece& piece) {
     kernel::ExactVec3 pole = cross(piece.a, piece.b);
     make_primitive(pole);
     const auto is_parallel = [&](const kernel::ExactVec3& other) { return is_zero(cross(pole, other)); };
@@ -82,44 +82,35 @@ void certify(const contour::ArcSum& sum, const Factor& factor, int cap, Derivati
 
 // --- Quick arcs ---
 
-// The first attempt at a certified gradient: translates the boundary that the edge engine found into corners of space,
-// lines and pieces, and adds these in double-double arithmetic (contour/quick_contour.h).
+// The first attempt at a certified gradient: adds the arcs that the edge engine found (visibility/visible_arcs.h), with
+// their lines in space, in double-double arithmetic (contour/quick_contour.h).
 
 // A workspace.
 class QuickArcs {
  public:
   // Starts new sums in the existing memory.
   void start(const Vec3& normal) { sum_ = contour::QuickGradient(normal); }
-  // Adds the boundary of one plane's visible region. Declines what the Booleans found.
-  void add(const visibility::PlaneQuery& query, const visibility::VisibleBoundary& boundary);
+  // Adds what is seen of one plane. Declines what the Booleans found.
+  void add(const visibility::ArcSection& seen);
   [[nodiscard]] const contour::QuickGradient& sum() const { return sum_; }
-  // Calls visit(part, line, shares, ends) for each part of a boundary that the edge engine found, without adding it.
-  // `ends`: the corners that are the points a and b of the line.
+  // Calls visit(arc, line, shares, ends) for each arc that the edge engine found, without adding it. `ends`: the
+  // corners that are the points a and b of the line.
   template <class Visit>
-  void for_each_share(const visibility::PlaneQuery& query, visibility::EdgeCovers& found, const Visit& visit) {
-    translate(query, found);
+  void for_each_share(const visibility::ArcSection& seen, const Visit& visit) {
+    make_lines(seen);
     shares_.resize(pieces_.size());
-    const std::span lines = std::span(lines_).first(edges_.size());
-    sum_.find_shares(pieces_, lines, shares_);
+    sum_.find_shares(pieces_, lines_, shares_);
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      const visibility::EdgeCovers::Part& part = found.parts()[i];
-      const visibility::Outlines::Edge& edge = found.outlines().edge(part.edge);
-      const contour::QuickGradient::Line& line = lines_[pieces_[i].edge];
-      const std::pair ends = line.reversed ? std::pair(edge.b, edge.a) : std::pair(edge.a, edge.b);
-      visit(part, line, shares_[i], ends);
+      const visibility::Arc& arc = seen.arcs[i];
+      const auto& [a, b, outline, whole] = seen.lines[arc.line];
+      visit(arc, lines_[arc.line], shares_[i], lines_[arc.line].reversed ? std::pair(b, a) : std::pair(a, b));
     }
   }
 
  private:
-  void translate(const visibility::PlaneQuery& query, visibility::EdgeCovers& found);
-  [[nodiscard]] std::uint32_t number_of_line(visibility::Outlines& outlines, visibility::EdgeId id);
-  [[nodiscard]] std::uint32_t number_of_corner(visibility::Outlines& outlines, visibility::CornerId id);
-  [[nodiscard]] contour::QuickCorner point_at(visibility::Outlines& outlines, visibility::CornerId corner) const;
+  void make_lines(const visibility::ArcSection& seen);
 
   contour::QuickGradient sum_;
-  const visibility::SourcePlane* plane_ = nullptr;
-  kernel::double_double::Bounded offset_;  // of the source's plane, in the scale of its normal and of the corners
-  std::vector<std::uint32_t> number_, corner_number_;  // by edge, by corner
   std::vector<contour::QuickCorner> corners_;
   std::vector<contour::QuickEdge> edges_;
   std::vector<contour::QuickGradient::Line> lines_;
@@ -138,15 +129,15 @@ class PointGradient {
   };
   // Starts a new one.
   void start(const visibility::View& view, const Request& request);
-  // Takes one plane with its visible boundary.
-  void add(const visibility::PlaneQuery& query, const visibility::VisibleBoundary& boundary);
+  // Takes what is seen of one plane.
+  void add(const visibility::PlaneQuery& query, const visibility::ArcSection& seen);
 
   // Encloses F, by the sums for V. Requires that something is visible.
   [[nodiscard]] Ball form_factor() const;
   // Takes the values that double-double determines. False if others are left: then call add_exactly for all planes in
   // the same order, and certify.
   [[nodiscard]] bool finish(int cap, Gradient& result);
-  void add_exactly(const visibility::PlaneQuery& query, const visibility::VisibleBoundary& boundary);
+  void add_exactly(const visibility::PlaneQuery& query, const visibility::ArcSection& seen);
   void certify(int cap, Gradient& result);
 
  private:
@@ -160,7 +151,8 @@ class PointGradient {
   bool list_arcs_ = false;
   bool something_visible_ = false;
   std::optional<Kink> kink_;
-  std::vector<std::vector<SightResult>> kinks_;  // by plane of the source, if `along` is asked for
+  std::vector<std::vector<SightResult>> kinks_;      // by plane of the source, if `along` is asked for
+  bool opens_normal_ = false, opens_lines_ = false;  // sums in balls are needed: of V, of the lines in space
   std::size_t exact_planes_ = 0;
   std::vector<contour::MovingArc> arcs_, contour_arcs_;
 };

@@ -63,7 +63,7 @@ void Profile::gather(const PlaneQuery& query, Extent extent) {
       return !stays_hidden_;
     });
   }
-  for (std::size_t c = 0; c < query.plane.covers.size() && !stays_hidden_; ++c) {
+  for (std::size_t c = 0; c < query.plane.covers.size() && source_count_ > 0 && !stays_hidden_; ++c) {
     const std::uint32_t cover = query.plane.covers[c];
     clip.take(query.view.scene.corners(query.view.scene.pieces()[cover]));
     const OutlineId outline = clip.add_occluder(false, facing_of(query.view, query.view.scene.pieces()[cover]));

@@ -16,14 +16,16 @@ using contour::MovingArc;
 using kernel::ExactVec3;
 using kernel::Rational;
 using kernel::RationalVec3;
+using visibility::Arc;
+using visibility::ArcCorner;
+using visibility::ArcLine;
+using visibility::ArcSection;
 using visibility::BoundaryPiece;
 using visibility::CornerId;
-using visibility::EdgeCovers;
 using visibility::EdgeId;
 using visibility::OutlineId;
 using visibility::Outlines;
 using visibility::PlaneQuery;
-using visibility::VisibleBoundary;
 
 void VertexGradient::start(const visibility::View& view) {
   normal_ = view.n;
@@ -42,16 +44,16 @@ bool VertexGradient::gather(const PlaneQuery& query) {
   return profile_.source_count() > 0 && !profile_.stays_hidden();
 }
 
-void VertexGradient::add(const PlaneQuery& query, const VisibleBoundary& boundary) {
+void VertexGradient::add(const PlaneQuery& query, const ArcSection& seen) {
   frames_.push_back(frame_of(query.view.scene, query.plane.pieces.front()));
   if (!gather(query)) return;
   const VertexMotions motions(query);
-  find_kinks(query, motions, !boundary.empty());
-  if (boundary.empty()) return;
-  if (boundary.edges() != nullptr) {
-    add_quickly(query, motions, *boundary.edges());
+  find_kinks(query, motions, !seen.empty());
+  if (seen.empty()) return;
+  if (seen.is_by_edges()) {
+    add_quickly(motions, seen);
   } else {
-    add_by_planes(query, motions, boundary);  // in balls alone
+    add_by_planes(query, motions, seen);  // in balls alone
     for (const auto& [place, arcs] : arcs_) sums_[place].decline();
   }
 }
@@ -197,33 +199,42 @@ bool is_certainly_zero(const Vec3& a, const Vec3& b, const Vec3& x, int axis) {
 
 }  // namespace
 
+bool VertexGradient::is_of_source(const ArcLine& line) const {
+  return line.outline != Outlines::kNone && line.outline < profile_.source_count();
+}
+
+std::optional<VertexMotions::VertexPair> VertexGradient::vertices_of(const VertexMotions& motions,
+                                                                     const ArcSection& seen,
+                                                                     const ArcLine& line) const {
+  const ArcCorner &a = seen.corners[line.a], &b = seen.corners[line.b];
+  return is_of_source(line) ? motions.line_of_source({a.p, a.q}, {b.p, b.q})
+                            : motions.line_of_occluder({a.p, a.q}, {b.p, b.q}, line.whole);
+}
+
 // The lines that a plane cuts are left to the balls.
-void VertexGradient::add_quickly(const PlaneQuery& query, const VertexMotions& motions, EdgeCovers& found) {
-  const Outlines& outlines = found.outlines();
-  const int exponent = outlines.scale_exponent();
-  quick_.for_each_share(query, found, [&](const auto& part, const auto& line, const auto& shares, const auto& ends) {
-    const Outlines::Edge& edge = outlines.edge(part.edge);
-    const auto a = outlines.vertex(ends.first), b = outlines.vertex(ends.second);
-    const auto vertices =
-        is_of_source(edge) ? motions.line_of_source(outlines, edge) : motions.line_of_occluder(outlines, edge);
-    if (vertices && a && b) {
-      const Vec3 &p = outlines.position(*a), &q = outlines.position(*b);
+void VertexGradient::add_quickly(const VertexMotions& motions, const ArcSection& seen) {
+  quick_.for_each_share(seen, [&](const Arc& arc, const auto& line, const auto& shares, const auto& ends) {
+    const ArcLine& of = seen.lines[arc.line];
+    const ArcCorner &a = seen.corners[ends.first], &b = seen.corners[ends.second];
+    const auto vertices = vertices_of(motions, seen, of);
+    if (vertices && a.is_vertex() && b.is_vertex()) {
+      const Vec3 &p = seen.vertices[a.p], &q = seen.vertices[b.p];
       const auto add = [&](std::uint32_t vertex, const auto& share) {
         Sums& sums = sums_[motions.pair_of(vertex, vertex).first];
         for (int axis = 0; axis < 3; ++axis) {
-          if (is_certainly_zero(p, q, outlines.x(), axis)) continue;
+          if (is_certainly_zero(p, q, seen.x, axis)) continue;
           const kernel::double_double::Bounded c{line.cross.c[axis].hi, line.cross.c[axis].lo, line.cross.error};
-          sums.value[axis] = sums.value[axis] + contour::times_power(c * share, exponent);
+          sums.value[axis] = sums.value[axis] + contour::times_power(c * share, seen.scale_exponent);
           sums.has_terms[axis] = true;
         }
       };
-      add(*a, shares.a);
-      add(*b, shares.b);
+      add(a.p, shares.a);
+      add(b.p, shares.b);
     } else if (vertices) {
       sums_[vertices->first].decline();
       sums_[vertices->second].decline();
-    } else if (!is_of_source(edge)) {
-      for (const std::uint32_t place : frame_of(query.view.scene, piece_of_cut(motions, outlines, edge))) {
+    } else if (!is_of_source(of)) {
+      for (const std::uint32_t place : motions.frame_of_piece(piece_of_cut(motions, seen, of))) {
         sums_[place].decline();
       }
       for (const std::uint32_t place : motions.source_frame()) sums_[place].decline();
@@ -232,18 +243,19 @@ void VertexGradient::add_quickly(const PlaneQuery& query, const VertexMotions& m
 }
 
 // The piece of the profile that the source's plane cuts between the same vertices.
-std::uint32_t VertexGradient::piece_of_cut(const VertexMotions& motions, const Outlines& outlines,
-                                           const Outlines::Edge& edge) {
+std::uint32_t VertexGradient::piece_of_cut(const VertexMotions& motions, const ArcSection& seen,
+                                           const ArcLine& line) const {
   const Outlines& own = profile_.outlines();
-  const auto segment = [&](const Outlines& of, CornerId corner) {
-    const auto [p, q] = of.segment(corner);
+  const auto segment = [&](CornerId corner) {
+    const auto [p, q] = own.segment(corner);
     return motions.pair_of(p, q);
   };
-  const std::pair wanted = std::minmax({segment(outlines, edge.a), segment(outlines, edge.b)});
+  const ArcCorner &a = seen.corners[line.a], &b = seen.corners[line.b];
+  const std::pair wanted = std::minmax({motions.pair_of(a.p, a.q), motions.pair_of(b.p, b.q)});
   for (auto id = static_cast<OutlineId>(profile_.source_count()); id < own.outlines().size(); ++id) {
     const Outlines::Outline& outline = own.outline(id);
     for (EdgeId e = outline.first; !outline.whole && e < outline.first + outline.count; ++e) {
-      const auto p = segment(own, own.edge(e).a), q = segment(own, own.edge(e).b);
+      const auto p = segment(own.edge(e).a), q = segment(own.edge(e).b);
       if (std::minmax({p, q}) == wanted) return profile_.pieces()[id];
     }
   }
@@ -251,37 +263,35 @@ std::uint32_t VertexGradient::piece_of_cut(const VertexMotions& motions, const O
   return 0;
 }
 
-void VertexGradient::add_by_edges(const VertexMotions& motions, EdgeCovers& found) {
-  for (const EdgeCovers::Part& part : found.parts()) {
+void VertexGradient::add_by_edges(const VertexMotions& motions, const ArcSection& seen) {
+  const visibility::ExactArcs exact(seen);
+  for (const Arc& arc : seen.arcs) {
     kernel::poll();
-    const Outlines& outlines = found.outlines();
-    const Outlines::Edge edge = outlines.edge(part.edge);
-    const bool of_source = is_of_source(edge);
-    const auto line = of_source ? motions.line_of_source(outlines, edge) : motions.line_of_occluder(outlines, edge);
-    if (of_source && !line) continue;  // on the horizon
-    const BoundaryPiece piece = found.exact(part);
+    const ArcLine& of = seen.lines[arc.line];
+    const auto line = vertices_of(motions, seen, of);
+    if (is_of_source(of) && !line) continue;  // on the horizon
+    const BoundaryPiece piece = exact(arc);
     ExactVec3 begin = piece.a * piece.begin.l + piece.b * piece.begin.m,
               end = piece.a * piece.end.l + piece.b * piece.end.m;
     const ExactVec3 pole = cross(begin, end);
     if (is_zero(pole)) continue;
     const std::vector<VertexMotion> motion =
-        line ? motions.of_line(pole, *line) : motions.of_cut(pole, piece_of_cut(motions, outlines, edge));
+        line ? motions.of_line(pole, *line) : motions.of_cut(pole, piece_of_cut(motions, seen, of));
     for (const VertexMotion& one : motion) arcs_[one.place].push_back({one.place, {begin, end, one.share}, one.turn});
   }
 }
 
-void VertexGradient::add_by_planes(const PlaneQuery& query, const VertexMotions& motions,
-                                   const VisibleBoundary& boundary) {
-  for_each_plane(boundary, query.view.normal().exact, [&](const ExactVec3& pole) {
+void VertexGradient::add_by_planes(const PlaneQuery& query, const VertexMotions& motions, const ArcSection& seen) {
+  for_each_plane(seen, query.view.normal().exact, [&](const ExactVec3& pole) {
     VertexSight sight(query, profile_, motions, profile_.edge_in_plane(pole));
     sight.judge(VertexSight::Extent::kAll);
     for (VertexArc& arc : sight.arcs()) arcs_[arc.place].push_back(std::move(arc));
   });
 }
 
-void VertexGradient::add_exactly(const PlaneQuery& query, const VisibleBoundary& boundary) {
-  if (boundary.empty() || boundary.edges() == nullptr || !gather(query)) return;
-  add_by_edges(VertexMotions(query), *boundary.edges());
+void VertexGradient::add_exactly(const PlaneQuery& query, const ArcSection& seen) {
+  if (!seen.is_by_edges() || seen.empty() || !gather(query)) return;
+  add_by_edges(VertexMotions(query), seen);
 }
 
 // --- Results ---

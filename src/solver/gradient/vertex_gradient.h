@@ -32,12 +32,12 @@ class VertexGradient {
  public:
   // Starts a new one.
   void start(const visibility::View& view);
-  // Takes one plane with its visible boundary.
-  void add(const visibility::PlaneQuery& query, const visibility::VisibleBoundary& boundary);
+  // Takes what is seen of one plane.
+  void add(const visibility::PlaneQuery& query, const visibility::ArcSection& seen);
 
   // As those of PointGradient.
   [[nodiscard]] bool finish(int cap, Gradient& result);
-  void add_exactly(const visibility::PlaneQuery& query, const visibility::VisibleBoundary& boundary);
+  void add_exactly(const visibility::PlaneQuery& query, const visibility::ArcSection& seen);
   void certify(int cap, Gradient& result);
 
  private:
@@ -47,13 +47,17 @@ class VertexGradient {
   void add_lines();
   [[nodiscard]] bool differ(const VertexMotions& motions, std::span<const visibility::EdgeId> group);
   [[nodiscard]] bool overlaps_source(const VertexMotions& motions, std::span<const std::uint32_t> vertices);
-  void add_quickly(const visibility::PlaneQuery& query, const VertexMotions& motions, visibility::EdgeCovers& found);
-  void add_by_edges(const VertexMotions& motions, visibility::EdgeCovers& found);
+  void add_quickly(const VertexMotions& motions, const visibility::ArcSection& seen);
+  void add_by_edges(const VertexMotions& motions, const visibility::ArcSection& seen);
   void add_by_planes(const visibility::PlaneQuery& query, const VertexMotions& motions,
-                     const visibility::VisibleBoundary& boundary);
+                     const visibility::ArcSection& seen);
   [[nodiscard]] bool is_of_source(const visibility::Outlines::Edge& edge) const;
-  [[nodiscard]] std::uint32_t piece_of_cut(const VertexMotions& motions, const visibility::Outlines& outlines,
-                                           const visibility::Outlines::Edge& edge);
+  [[nodiscard]] bool is_of_source(const visibility::ArcLine& line) const;
+  [[nodiscard]] std::optional<VertexMotions::VertexPair> vertices_of(const VertexMotions& motions,
+                                                                     const visibility::ArcSection& seen,
+                                                                     const visibility::ArcLine& line) const;
+  [[nodiscard]] std::uint32_t piece_of_cut(const VertexMotions& motions, const visibility::ArcSection& seen,
+                                           const visibility::ArcLine& line) const;
 
   struct Sums {
     std::array<kernel::double_double::Bounded, 3> value;

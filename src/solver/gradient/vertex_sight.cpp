@@ -73,9 +73,11 @@ bool VertexMotions::is_in_source_plane(std::uint32_t vertex) const {
   return kernel::orientation(plane_.point, plane_.second, plane_.third, scene_.vertices()[vertex]) == 0;
 }
 
-std::optional<VertexMotions::VertexPair> VertexMotions::line_of_source(const Outlines& outlines,
-                                                                       const Outlines::Edge& edge) const {
-  const auto a = outlines.segment(edge.a), b = outlines.segment(edge.b);
+std::array<std::uint32_t, 3> VertexMotions::frame_of_piece(std::uint32_t piece) const {
+  return frame_of(scene_, piece);
+}
+
+std::optional<VertexMotions::VertexPair> VertexMotions::line_of_source(const Segment& a, const Segment& b) const {
   const VertexPair p = pair_of(a.first, a.second), q = pair_of(b.first, b.second);
   const auto is_end = [](std::uint32_t place, const VertexPair& pair) {
     return place == pair.first || place == pair.second;
@@ -88,10 +90,9 @@ std::optional<VertexMotions::VertexPair> VertexMotions::line_of_source(const Out
 
 // A convex outline that is cut lies on both sides of the source's plane, so that an edge with both ends in this plane
 // is the cut.
-std::optional<VertexMotions::VertexPair> VertexMotions::line_of_occluder(const Outlines& outlines,
-                                                                         const Outlines::Edge& edge) const {
-  const auto line = line_of_source(outlines, edge);
-  const bool whole = edge.outline == Outlines::kNone || outlines.outline(edge.outline).whole;
+std::optional<VertexMotions::VertexPair> VertexMotions::line_of_occluder(const Segment& a, const Segment& b,
+                                                                         bool whole) const {
+  const auto line = line_of_source(a, b);
   if (line && !whole && is_in_source_plane(line->first) && is_in_source_plane(line->second)) return std::nullopt;
   return line;
 }

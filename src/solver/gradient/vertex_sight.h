@@ -61,17 +61,27 @@ class VertexMotions {
   [[nodiscard]] VertexPair pair_of(std::uint32_t p, std::uint32_t q) const;
   // The vertices through which the edge of an occluder's outline runs. Nullopt: it is a cut by the source's plane.
   [[nodiscard]] std::optional<VertexPair> line_of_occluder(const visibility::Outlines& outlines,
-                                                           const visibility::Outlines::Edge& edge) const;
+                                                           const visibility::Outlines::Edge& edge) const {
+    const bool whole = edge.outline == visibility::Outlines::kNone || outlines.outline(edge.outline).whole;
+    return line_of_occluder(outlines.segment(edge.a), outlines.segment(edge.b), whole);
+  }
   // The same for the source. Nullopt: it lies on the horizon.
   [[nodiscard]] std::optional<VertexPair> line_of_source(const visibility::Outlines& outlines,
-                                                         const visibility::Outlines::Edge& edge) const;
+                                                         const visibility::Outlines::Edge& edge) const {
+    return line_of_source(outlines.segment(edge.a), outlines.segment(edge.b));
+  }
+  // The same between the corners on two segments (Outlines::segment). `whole`: of an outline that is not clipped.
+  using Segment = std::pair<std::uint32_t, std::uint32_t>;
+  [[nodiscard]] std::optional<VertexPair> line_of_occluder(const Segment& a, const Segment& b, bool whole) const;
+  [[nodiscard]] std::optional<VertexPair> line_of_source(const Segment& a, const Segment& b) const;
   [[nodiscard]] bool is_in_source_plane(std::uint32_t vertex) const;
 
   // N is any normal of the line's plane.
   [[nodiscard]] std::vector<VertexMotion> of_line(const kernel::ExactVec3& N, const VertexPair& line) const;
   [[nodiscard]] std::vector<VertexMotion> of_cut(const kernel::ExactVec3& N, std::uint32_t piece) const;
 
-  // Places of the vertices that the plane of the source follows.
+  // Places of the vertices that the plane of a piece, and that of the source, follows.
+  [[nodiscard]] std::array<std::uint32_t, 3> frame_of_piece(std::uint32_t piece) const;
   [[nodiscard]] const std::array<std::uint32_t, 3>& source_frame() const { return source_.places; }
   // Of those, each one's share in directions w, as in a cut.
   [[nodiscard]] const kernel::RationalVec3& source_share(int corner) const { return source_.shares[corner]; }

@@ -249,7 +249,7 @@ class BooleanWalk {
     result_.record.engine = Engine::kBoolean;
   }
 
-  // Steps 1 to 4 alone.
+  // Steps 1 to 5 alone.
   Cutters find_cutters() {
     if (view_.is_buried || view_.is_own(plane_.pieces.front()) || side_of(plane_, view_.x) <= 0) return {};
     gather_source();
@@ -310,12 +310,12 @@ Outcome BooleanWalk::find_outcome() {
   if (side_of(plane_, view_.x) <= 0) return Outcome::kBehind;
   // 2. Clip by the receiver's horizon.
   if (!clip_by_horizon()) return Outcome::kBelowHorizon;
-  // 3. Find candidates. 4. Stop if one hides all.
+  // 4. Find candidates. 5. Stop if one hides all.
   make_hull();
   if (!gather_occluders()) return Outcome::kHiddenByOne;
   if (request_.list_cutters) list_cutters();
   result_.record.source_joined = clipped_.size() > 1;
-  // 6. The boundary: of the source, if there are no candidates;
+  // 7. The boundary: of the source, if there are no candidates;
   if (occluders_.empty() && plane_.covers.empty()) {
     trace_source();
     return Outcome::kUnoccluded;

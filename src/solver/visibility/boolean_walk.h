@@ -1,11 +1,11 @@
 // The visible boundary by polygon Booleans: the reference engine.
 //
-// Steps 1 to 6 of the exact method (src/README.md) without step 5, stopping as soon as nothing is left:
+// Steps 1 to 7 of the exact method (src/README.md) without steps 3 and 6, stopping as soon as nothing is left:
 //   1. cull: x behind or in the plane, or nothing above the horizon;
 //   2. clip by the receiver's horizon, exactly;
-//   3. find candidates in the shaft: bounding-volume tree, exact predicates, exact clip;
-//   4. stop if one of them hides all;
-//   6. the boundary: of the clipped source itself if there are no candidates, otherwise by projection to the source's
+//   4. find candidates in the shaft: bounding-volume tree, exact predicates, exact clip;
+//   5. stop if one of them hides all;
+//   7. the boundary: of the clipped source itself if there are no candidates, otherwise by projection to the source's
 //      plane and polygon Booleans (polygon_sets.h); its loops, collinear pieces merged.
 #pragma once
 
@@ -33,7 +33,7 @@ namespace exactff::visibility {
 //   { t : M . t < h }  and  { t : (s_i+1 x s_i) . t > 0 for every side i }
 // has an interior in the piece's own plane and that plane does not contain x.
 //
-// Steps 3 and 4 of the exact method (src/README.md) for one piece, each a sign with a filter first and an exact product
+// Steps 4 and 5 of the exact method (src/README.md) for one piece, each a sign with a filter first and an exact product
 // last:
 //   a. nothing strictly on x's side of the source's plane, nothing ahead of x, or everything on or outside one side
 //      plane: outside (conservative; most pieces end here);
@@ -98,7 +98,7 @@ class Shaft {
 
 PlaneVisibility find_by_booleans(const View& view, const SourcePlane& plane, const BoundaryRequest& request);
 
-// The cutters alone (steps 1 to 4).
+// The cutters alone (steps 1 to 5).
 Cutters find_cutters(const View& view, const SourcePlane& plane, const BoundaryRequest& request);
 
 // The exact geometry behind a result, for drawings.

@@ -135,6 +135,8 @@ class Outlines {
     const Origin& origin = origins_[id];
     return {origin.p, origin.is_vertex() ? origin.p : origin.q};
   }
+  // The plane, if the corner is not a vertex.
+  [[nodiscard]] Plane plane(CornerId id) const { return origins_[id].plane; }
   // Not null if the corner was constructed in double-double arithmetic: its doubles are those of `hi`.
   [[nodiscard]] const FineDirection* fine(CornerId id) const {
     return origins_[id].fine == kNone ? nullptr : &fine_[origins_[id].fine];

@@ -81,8 +81,9 @@ class VisibleBoundary {
     if (edges_ == nullptr) return;
     for (const EdgeCovers::Part& part : edges_->parts()) visit(edges_->exact(part));
   }
-  // The same pieces for arithmetic in doubles, if the edge engine found them; else null.
+  // What the edge engine found, else null; and what the Booleans found.
   [[nodiscard]] EdgeCovers* edges() const { return edges_; }
+  [[nodiscard]] std::vector<BoundaryPiece>& pieces() { return pieces_; }
 
  private:
   std::vector<BoundaryPiece> pieces_;

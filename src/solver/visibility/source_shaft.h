@@ -1,4 +1,4 @@
-// The shaft of the edge engine: the pyramid from x to one outline of the source, for step 3 of the exact method. The
+// The shaft of the edge engine: the pyramid from x to one outline of the source, for step 4 of the exact method. The
 // tree gets it as half-spaces. Then signs of the heights of a piece's corners above a few planes decide whether the
 // piece enters it.
 //
@@ -99,7 +99,7 @@ struct BacksMemory {
 
 // --- Piece clip ---
 
-// Steps 2 and 3 of the exact method for one piece of the scene: its part above the receiver's horizon, or its part on
+// Steps 2 and 4 of the exact method for one piece of the scene: its part above the receiver's horizon, or its part on
 // x's side of the source's plane. Becomes an outline of the edge engine.
 
 // The part of the source above the horizon: the first outlines.

@@ -3,14 +3,14 @@
 // The edge engine works by predicates alone. A corner is constructed only where an edge crosses the
 // horizon or the source's plane (source_plane.h).
 //
-// Steps 1 to 6 of the exact method (src/README.md), stopping as soon as nothing is left:
+// Steps 1 to 7 of the exact method (src/README.md), stopping as soon as nothing is left:
 //   1. cull: x behind or in the plane, or nothing above the horizon;
 //   2. clip the pieces that the receiver's horizon cuts (source_shaft.h);
-//   3. find candidates in the shaft;
-//   4. stop if one of them hides all;
-//   5. try a few that may hide all together; before step 3, those that hid the plane from the receiver before, if the
-//      caller allows it;
-//   6. cut the edges: find the visible parts of each (visible_edges.h).
+//   3. try those that hid the plane from the receiver before, if the caller allows it;
+//   4. find candidates in the shaft;
+//   5. stop if one of them hides all;
+//   6. try a few that may hide all together;
+//   7. cut the edges: find the visible parts of each (visible_edges.h).
 #include "visibility/visible_boundary.h"
 
 #include <algorithm>
@@ -111,9 +111,9 @@ bool SurfaceBacks::may_leave_out_backs(std::uint32_t surface) const {
   return !memory_.has_own_piece.is_set(surface);
 }
 
-// --- Steps 3 and 4: candidates ---
+// --- Steps 4 and 5: candidates ---
 
-// Steps 3 and 4 of the exact method, for the edge engine: finds the panels that enter the shaft and adds their
+// Steps 4 and 5 of the exact method, for the edge engine: finds the panels that enter the shaft and adds their
 // outlines, unless one of them hides all.
 //
 // Candidates come from the bounding-volume tree; then signs decide (source_shaft.h). A face that the source's plane
@@ -213,7 +213,7 @@ bool Candidates::visit(PanelId panel, bool inside) {
   if (search_.seen.is_set(panel) || !may_occlude(query_.view, query_.plane, query_.request, panel)) return false;
   const auto vertices = panels_.corners(panel);
   ++record_.tree_candidates;
-  // 3. Only what enters the shaft,
+  // 4. Only what enters the shaft,
   if (!inside) clip_.take(vertices);
   const Sides sides = inside ? kInsideShaft : shaft_.sides();
   if (!sides.some_above_each) return false;
@@ -233,7 +233,7 @@ bool Candidates::visit(PanelId panel, bool inside) {
     return false;
   }
   outlines_.set_within_lines(outline, sides.wholly_above >> SourceShaft::kSidePlanesBeforeEdges);
-  // 4. Does it hide all?
+  // 5. Does it hide all?
   if (search_.edges.hides_all(outline, source_count_)) return true;
   if (left_out) {
     outlines_.remove_last();
@@ -242,9 +242,9 @@ bool Candidates::visit(PanelId panel, bool inside) {
   return false;
 }
 
-// --- Step 5: a few that hide all ---
+// --- Steps 3 and 6: a few that hide all ---
 
-// A few occluders that hide all of the source together. That they do is proved by step 6 for their own edges and the
+// A few occluders that hide all of the source together. That they do is proved by step 7 for their own edges and the
 // source's alone (visible_edges.h).
 
 // Adds the part of the panel between x and the source's plane, if there is any.
@@ -356,12 +356,12 @@ std::optional<Outcome> EdgeWalk::find_outcome() {
   source_ = PieceClip(query_, edges_.outlines(), work_.search.clip).add_source();
   record.horizon_clipped = source_.is_cut;
   if (source_.count == 0) return Outcome::kBelowHorizon;
-  // 5. Try what hid the plane before.
+  // 3. Try what hid the plane before.
   if (std::optional<PlaneRecord> hidden = hidden_as_before(query_, work_)) {
     record = std::move(*hidden);
     return Outcome::kHiddenByUnion;
   }
-  // 3. Find candidates. 4. Stop if one hides all.
+  // 4. Find candidates. 5. Stop if one hides all.
   Candidates candidates(query_, source_.count, work_.search, record);
   auto alone = candidates.gather(most_candidates());
   if (candidates.too_many()) {
@@ -372,9 +372,9 @@ std::optional<Outcome> EdgeWalk::find_outcome() {
   }
   if (alone) return hidden_by_panel(*alone);
   candidates.add_covers();
-  // 5. Try a few occluders.
+  // 6. Try a few occluders.
   const bool hidden = hidden_by_few(query_, source_.count, work_);
-  // 6. Cut the edges.
+  // 7. Cut the edges.
   if (!hidden && !edges_.find(source_.count)) return std::nullopt;
   result_.boundary = VisibleBoundary(edges_);
   note_edges(edges_);

@@ -12,7 +12,7 @@
 //     with the same side, the one with the lowest index keeps it.
 // Where an O-edge lies on the outer boundary of S, it has S on one side only, and the S-edge represents both.
 //
-// Step 6 of the exact method (src/README.md) in four parts:
+// Step 7 of the exact method (src/README.md) in four parts:
 //   a. silhouettes: an edge that two occluders share, one on each side, cannot bound V; nor can its duplicates;
 //   b. a grid over the source (outline_grid.h) finds the outlines that an edge may meet;
 //   c. edges are processed in runs of up to four corners, outline by outline; where there are many outlines, neighbours

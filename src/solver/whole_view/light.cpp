@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "exact/workspace.h"
+#include "kernel/expect.h"
 #include "kernel/float_environment.h"
 #include "text/text_lines.h"
 
@@ -85,10 +87,32 @@ void SourceFactors::find_one(const Receiver& receiver, std::size_t source, const
   take_from_view(source, memory.view, factor);
 }
 
-void SourceFactors::look_around(const Receiver& receiver, const ExactOptions& options, Results& memory) const {
-  const ViewOptions all{
+void SourceFactors::measure_all(const Receiver& receiver, const ExactOptions& options, std::vector<FormFactor>& factors,
+                                Results& memory) const {
+  EXACTFF_EXPECT(sweeps(options));
+  measure_again(scene_, receiver, all_of(options), memory.view, memory.workspace);
+  factors.resize(count());
+  for (std::size_t s = 0; s < count(); ++s) take_from_view(s, memory.view, factors[s]);
+}
+
+void SourceFactors::measure_one(const Receiver& receiver, std::size_t source, const ExactOptions& options,
+                                FormFactor& factor, Results& memory) const {
+  EXACTFF_EXPECT(options.engine != Engine::kBoth);
+  if (is_sky(source)) {
+    measure_again(scene_, receiver, all_of(options), memory.view, memory.workspace);
+    return take_from_view(source, memory.view, factor);
+  }
+  WorkspaceInside::memory(memory.workspace)
+      .region.measure(options.measure, options.digits, options.precision_cap, factor);
+}
+
+ViewOptions SourceFactors::all_of(const ExactOptions& options) const {
+  return {
       .faces = faces_, .measure = options.measure, .digits = options.digits, .precision_cap = options.precision_cap};
-  view(scene_, receiver, all, memory.view, memory.workspace);
+}
+
+void SourceFactors::look_around(const Receiver& receiver, const ExactOptions& options, Results& memory) const {
+  view(scene_, receiver, all_of(options), memory.view, memory.workspace);
 }
 
 // The view lists what has a share, by index.

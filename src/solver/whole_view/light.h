@@ -16,6 +16,11 @@
 
 namespace exactff::whole_view {
 
+// The view of another measure, from what the last call of view() found for this receiver, with the same workspace and
+// the same options otherwise. Both measures are of a sphere, or neither is.
+void measure_again(const Scene& scene, const Receiver& receiver, const ViewOptions& options, WholeView& result,
+                   Workspace& workspace);
+
 // --- Source factors ---
 
 // Form factors of several sources at one point. Where the sources are most of the scene, one sweep over the whole view
@@ -56,9 +61,17 @@ class SourceFactors {
                 Results& memory) const;
   void find_one(const Receiver& receiver, std::size_t source, const ExactOptions& options, FormFactor& factor,
                 Results& memory) const;
+  // The same for another measure, without a new search: right after find_all, or find_one, with the same memory for the
+  // same receiver, and source. Requires that both measures are of a sphere, or neither is, and one engine alone. Sets
+  // value, bounds, status, enclosure and precision.
+  void measure_all(const Receiver& receiver, const ExactOptions& options, std::vector<FormFactor>& factors,
+                   Results& memory) const;
+  void measure_one(const Receiver& receiver, std::size_t source, const ExactOptions& options, FormFactor& factor,
+                   Results& memory) const;
 
  private:
   void look_around(const Receiver& receiver, const ExactOptions& options, Results& memory) const;
+  [[nodiscard]] ViewOptions all_of(const ExactOptions& options) const;
   void take_from_view(std::size_t source, const WholeView& view, FormFactor& factor) const;
 
   const Scene& scene_;

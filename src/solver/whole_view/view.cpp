@@ -20,6 +20,7 @@
 #include "kernel/ball.h"
 #include "kernel/float_environment.h"
 #include "scene/scene.h"
+#include "whole_view/light.h"
 #include "whole_view/view_edges.h"
 
 namespace exactff {
@@ -35,6 +36,7 @@ using whole_view::ViewEdges;
 struct ViewMemory : WorkspaceInside::Memory::Guest {
   struct Half {
     ViewEdges edges;
+    visibility::VisibleArcs arcs;
     std::vector<Bounded> terms;
   };
   std::array<Half, 2> halves;  // of a sphere's view; of any other receiver the first
@@ -102,10 +104,15 @@ class ViewSolver {
     views_.emplace_back(scene, exact::looking_along(receiver, {-n.x, -n.y, -n.z}));
   }
 
-  void run() {
-    memory_.quick.start(views_.front().n);
+  void find() {
     result_.record = {};
     for (std::uint32_t h = 0; h < views_.size(); ++h) find_half(views_[h], memory_.halves[h]);
+  }
+
+  // Reads what was found.
+  void measure() {
+    memory_.quick.start(views_.front().n);
+    for (std::uint32_t h = 0; h < views_.size(); ++h) find_terms(memory_.halves[h]);
     memory_.references.clear();
     add_up();
     set_patches();
@@ -120,11 +127,8 @@ class ViewSolver {
     half.edges.find(view, options_.arcs    ? ViewEdges::Wholes::kFaces
                           : options_.faces ? ViewEdges::Wholes::kFronts
                                            : ViewEdges::Wholes::kPatches);
-    if (measure_.is_form_factor()) {
-      memory_.quick.find_terms(half.edges, half.edges.parts(), half.terms);
-    } else {
-      memory_.quick.find_terms(half.edges, half.edges.parts(), measure_, view.n, half.terms);
-    }
+    half.arcs.clear();
+    half.arcs.add(view, half.edges);
     const ViewEdges::Work& work = half.edges.work();
     ViewRecord& record = result_.record;
     record.outlines += work.outlines;
@@ -133,6 +137,14 @@ class ViewSolver {
     record.undecided += work.undecided;
     record.pierced += work.pierced;
     record.arcs += half.edges.parts().size();
+  }
+
+  void find_terms(ViewMemory::Half& half) {
+    if (measure_.is_form_factor()) {
+      memory_.quick.find_terms(half.arcs[0], half.terms);
+    } else {
+      memory_.quick.find_terms(half.arcs[0], measure_, half.terms);
+    }
   }
 
   // Calls visit(view, half, its number) for each half.
@@ -427,7 +439,14 @@ void view(const Scene& scene, const Receiver& receiver, const ViewOptions& optio
           Workspace& workspace) {
   const kernel::StandardArithmetic arithmetic;
   exact::check_view_arguments(scene, receiver, options.measure, options.precision_cap);
-  ViewSolver(scene, receiver, options, result, workspace).run();
+  ViewSolver solver(scene, receiver, options, result, workspace);
+  solver.find();
+  solver.measure();
+}
+
+void whole_view::measure_again(const Scene& scene, const Receiver& receiver, const ViewOptions& options,
+                               WholeView& result, Workspace& workspace) {
+  ViewSolver(scene, receiver, options, result, workspace).measure();
 }
 
 // --- Quantity ---
