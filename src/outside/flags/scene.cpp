@@ -35,6 +35,16 @@ std::vector<Selection> changed(const Scene& scene, const std::string& flag, cons
   return selections;
 }
 
+// The complaint about a value of --patches; completion offers the words in braces.
+std::string not_a_way(const std::string& patches) {
+  try {
+    (void)scene_options(patches);
+    return {};
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
 }  // namespace
 
 Scene divided_with_note(const Scene& scene, double length) {
@@ -60,7 +70,7 @@ void SceneArguments::add_to(CLI::App& app) {
          "What a patch is: groups (g lines; without them, o lines) or faces (each face is a patch NAME:k); or, as "
          "patches NAME/1, NAME/2, ... of each group by falling area: planes (connected faces in one plane), "
          "smooth[:DEGREES] (connected faces that bend by less; default 30) or parts (connected faces)")
-      ->type_name("WAY")
+      ->check(CLI::Validator(not_a_way, "{groups,faces,planes,smooth,parts}"))
       ->capture_default_str();
   app.add_option("--name", names,
                  "NAME=SELECTOR: a name for faces. SELECTOR is box:X0,Y0,Z0,X1,Y1,Z1 (faces inside), "
