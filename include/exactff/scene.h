@@ -140,8 +140,8 @@ class Scene {
   // Selects "NAME" or "NAME:k". A patch whose name is exactly the text has priority. Throws InputError that lists the
   // closest patch names if nothing matches.
   [[nodiscard]] Selection select(std::string_view name) const;
-  // The same, and if no patch is called NAME, all patches NAME:1, NAME:2, ... and NAME:k:1, ...: the cells of a divided
-  // patch, or the faces of PatchMode::kFaces. If there are none, and the text is a pattern, all patches whose names
+  // The same, and if no patch is called NAME, all patches NAME:1, NAME/2, ... and NAME:k:1, ...: the cells of a divided
+  // patch, or those of PatchMode. If there are none, and the text is a pattern, all patches whose names
   // match it, as fnmatch(3) says: * stands for any text, ? for one character, [...] for one of several, and \ makes the
   // next character an ordinary one. If no patch matches, all faces NAME:k that do. Patches without area are left out if
   // others match. In the order of the file.
@@ -204,12 +204,25 @@ class Scene {
 };
 
 enum class BadFaces { kReject, kSkip };
-enum class PatchMode { kGroups, kFaces };  // --patches faces: every face becomes a patch NAME:k
+// What a patch is. In the last three, the patches of a group NAME are NAME/1, NAME/2, ... by falling area; areas that
+// are the same float are ordered by the lowest of their vertices (by x, then y, then z) in which they differ. So names
+// do not depend on the order of faces. Faces of a group are neighbours if they have an edge in common, by the positions
+// of its ends. Faces without area belong to NAME/1.
+enum class PatchMode {
+  kGroups,  // a group of the file
+  kFaces,   // every face, NAME:k
+  kPlanes,  // neighbours in exactly one plane, with their fronts on one side
+  kSmooth,  // neighbours whose fronts differ by less than an angle; decided exactly, by the double nearest its cosine
+  kParts,   // neighbours
+};
 
 struct SceneOptions {
   BadFaces bad_faces = BadFaces::kReject;
   PatchMode patches = PatchMode::kGroups;
+  double smooth_degrees = 30.0;  // from 0 to 180
 };
+// "groups", "faces", "planes", "smooth", "smooth:20" (degrees), "parts". Throws InputError for another text.
+[[nodiscard]] SceneOptions scene_options(std::string_view patches, BadFaces bad_faces = BadFaces::kReject);
 
 // Collects vertices, materials, patches and faces, then checks and freezes them. Any finite double is
 // legal; a NaN or infinite coordinate is an input error.
@@ -246,6 +259,29 @@ class SceneBuilder {
   std::unique_ptr<State> state_;
 };
 
+// --- Names of faces ---
+
+// A name for the faces that a selector finds, of those with area. A selector is one of
+//   box:X0,Y0,Z0,X1,Y1,Z1   faces with all corners in the box
+//   normal:X,Y,Z[:DEGREES]  faces whose front is within the angle (default 5) of the direction; by exact signs
+//   plane:A,B,C,D[:DISTANCE]  faces with all corners at most that far (default 0: exactly) from A x + B y + C z = D
+//   NAME:1-20,25            faces of a patch by number
+//   NAME                    what Scene::select_all() finds
+// or several with " & " between them: the faces that all of them find.
+struct FaceName {
+  std::string name;
+  std::string selector;
+};
+[[nodiscard]] FaceName face_name(std::string_view text);  // "NAME=SELECTOR"; throws InputError for another text
+// The same scene in which these faces are patches of these names, new or existing. All selectors are about the given
+// scene; of two that find a face, the later one counts. Faces are numbered anew; patches that are left without faces
+// vanish. Throws InputError for a selector that cannot be read or finds nothing.
+[[nodiscard]] Scene with_names(const Scene& scene, std::span<const FaceName> names);
+// The same scene with other patches (PatchMode), each group of which is a patch of the given scene.
+[[nodiscard]] Scene with_patches(const Scene& scene, const SceneOptions& patches);
+
+// --- Cells ---
+
 // A scene whose faces are cut into cells, each a patch.
 struct DividedScene {
   Scene scene;
@@ -265,6 +301,44 @@ struct DividedScene {
 // could have.
 [[nodiscard]] DividedScene divided(const Scene& scene, double length);
 
+// --- Gaps ---
+
+// A scene in which corners that almost meet are one.
+struct WeldedScene {
+  // Faces that lie closer to each other than the length, face to face. They stay two.
+  struct Sheets {
+    Selection one, other;  // faces of the new scene
+    double apart =
+        0.0;  // the largest distance found, an estimate; 0 if the faces had different corners and now share all
+  };
+  Scene scene;
+  std::size_t corners_before = 0, corners = 0;  // positions
+  double largest_move = 0.0;                    // of a corner; in the scene's unit of length
+  std::size_t junctions = 0;                    // corners added to an edge of a face, each counted once a face
+  std::vector<FaceId> vanished;                 // faces of the given scene that have no area any more
+  std::vector<Sheets> sheets;                   // at most one for two patches
+};
+
+// Corners linked by distances of at most `length` (decided exactly) become one. Each coordinate is the lower median of
+// theirs. Edges that leave an axis by less than about that become parallel to it, so walls along axes are planar again.
+// Where an open edge passes an end of another one within `length`, the face gets it as a corner. These steps are
+// repeated until they change nothing, so welding again with the same length changes nothing. The result does not
+// depend on the order of faces and vertices. Faces that are not exactly planar then
+// are their triangles (FaceShape). Faces never merge. Those without area are left out; what is flipped or transparent
+// stays so. Throws InputError for a length that is not positive, and for one so large that a corner would move by more
+// than eight times of it.
+[[nodiscard]] WeldedScene welded(const Scene& scene, double length);
+
+// The smallest length, to about two digits, with which welded() leaves the fewest open edges (Scene::open_edge_count).
+// Tried are lengths up to 1/256 of the scene's size and 1/16 of the median open edge that make no face vanish but
+// slivers. What exact T-junctions leave open, as walls that meet a floor's edge in parts do, is no gap.
+struct Gap {
+  double length = 0.0;
+  std::size_t open_edges_before = 0, open_edges = 0;
+};
+// Nothing if no such length closes any.
+[[nodiscard]] std::optional<Gap> gap(const Scene& scene);
+
 // Every face cut into triangles at its own vertices: a face that is not planar into those that it stands for (see
 // SceneBuilder). Patches, materials and what is transparent stay, and so does every form factor between patches. Faces
 // are numbered anew; those without area, and skipped ones, are left out.
@@ -278,6 +352,7 @@ struct PatchSummary {
   std::optional<Vec3> front;          // mean unit normal; empty if the faces have different directions
   std::vector<MaterialId> materials;  // in the order of first use
   bool emits = false;
+  Vec3 centre = {}, low = {}, high = {};  // of its area, and the box of its faces with area
 };
 
 [[nodiscard]] PatchSummary summarise(const Scene& scene, PatchId id);

@@ -49,6 +49,9 @@ namespace exactff {
 // As above, from an open stream. `name` stands for the file in messages and locates its MTL files.
 [[nodiscard]] Scene read_obj(std::istream& in, const std::filesystem::path& name, const SceneOptions& options = {});
 
+// A file of names for faces: NAME=SELECTOR on each line (with_names); # begins a comment. Throws InputError with lines.
+[[nodiscard]] std::vector<FaceName> read_names(const std::filesystem::path& path);
+
 enum class Encoding {
   kDefault,  // binary for PLY, text for the others
   kText,     // PLY, STL

@@ -77,6 +77,18 @@ void check_form_factors(const Scene& scene) {
   }
 }
 
+void check_welding(const Scene& scene) {
+  if (const std::string broken = broken_promise(scene); !broken.empty()) fail(broken);
+  (void)gap(scene);
+  for (const double length : {1e-9, 0.125, 1e3}) {
+    try {
+      const Scene once = welded(scene, length).scene;
+      if (welded(once, length).largest_move != 0.0) fail("welding twice moves corners twice");
+    } catch (const InputError&) {  // too large for this scene
+    }
+  }
+}
+
 void check(std::string_view bytes, const SceneOptions& options) {
   const auto scene = read(bytes, EXACTFF_FUZZ_FILE, options);
   if (!scene) return;
@@ -103,5 +115,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   check(bytes, {});
   check(bytes, {BadFaces::kSkip, PatchMode::kFaces});
+  for (const PatchMode mode : {PatchMode::kPlanes, PatchMode::kSmooth, PatchMode::kParts}) {
+    const auto scene = read(bytes, EXACTFF_FUZZ_FILE, {BadFaces::kSkip, mode});
+    if (scene) check_welding(*scene);
+  }
   return 0;
 }

@@ -25,32 +25,6 @@ namespace {
 using generate::PlainScene;
 using generate::Random;
 
-FloorPlan random_plan(Random& random) {
-  const double a = random.integer(2, 5), b = random.integer(2, 5);
-  const double c = random.integer(1, static_cast<int>(a) - 1), d = random.integer(1, static_cast<int>(b) - 1);
-  if (random.one_in(3)) return {{{0, 0}, {a, 0}, {a, b}, {0, b}}};
-  if (random.one_in(2)) return {{{0, 0}, {a, 0}, {a, b}, {c, b}, {c, d}, {0, d}}};
-  return {{{0, 0}, {a, 0}, {a, d}, {a + 1, d}, {a + 1, b}, {0, b}}};
-}
-
-// Every face with corners of its own, all within `moved` of where they were in each coordinate.
-PlainScene with_moved_corners(const PlainScene& room, double moved, std::uint64_t seed) {
-  Random random(seed);
-  PlainScene result;
-  for (const generate::PlainPatch& patch : room.patches) {
-    for (const generate::PlainFace& face : patch.faces) {
-      std::vector<Vec3> ring;
-      for (const std::uint32_t corner : face.rings.front()) {
-        Vec3 v = room.vertices[corner];
-        for (double* x : {&v.x, &v.y, &v.z}) *x += random.between(-moved, moved);
-        ring.push_back(v);
-      }
-      result.add_ring(result.patch(patch.name), ring);
-    }
-  }
-  return result;
-}
-
 double perimeter_of_all(const PlainScene& scene) {
   double sum = 0.0;
   for (const generate::PlainPatch& patch : scene.patches) {
@@ -65,13 +39,6 @@ double perimeter_of_all(const PlainScene& scene) {
   return sum;
 }
 
-PlainScene random_room(Random& random) {
-  PlainScene room;
-  const FloorPlan plan = random_plan(random);
-  add_room(room, prism(plan, 0.0, random.integer(1, 3)));
-  return room;
-}
-
 std::string any_patch(const PlainScene& scene, Random& random) {
   return scene.patches[random.below(scene.patches.size())].name;
 }
@@ -82,7 +49,7 @@ TEST(AlmostClosedRooms, HaveTheFactorsOfTheRoomThatWasMeant) {
   std::size_t cells = 0, meant_cells = 0, judged = 0, slow = 0;
   for (std::uint64_t s = 0; s < scaled_count(40); ++s) {
     Random random(seed_of(s));
-    const PlainScene room = random_room(random);
+    const PlainScene room = random_plain_room(random);
     const double moved = std::pow(10.0, -15.0 + 10.0 * random.unit());
     const Scene meant = generate::build(room);
     const Scene scene = generate::build(with_moved_corners(room, moved, seed_of(s)));
@@ -133,7 +100,7 @@ TEST(AlmostClosedRooms, HoldMeansOfPoints) {
   double largest = 0.0;
   for (std::uint64_t s = 0; s < scaled_count(10); ++s) {
     Random random(seed_of(s));
-    PlainScene room = random_room(random);
+    PlainScene room = random_plain_room(random);
     if (random.one_in(3)) add_thing(room, box({0.25, 0.25, 0.0}, {0.75, 0.5, 0.5}));
     const double moved = std::pow(10.0, -4.0 + 2.5 * random.unit());
     const Scene scene = generate::build(with_moved_corners(room, moved, seed_of(s)));

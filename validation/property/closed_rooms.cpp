@@ -376,4 +376,43 @@ PlainScene random_hull_room(Random& random) {
   return scene;
 }
 
+// --- Rooms from CAD ---
+
+namespace {
+
+FloorPlan random_plan(Random& random) {
+  const double a = random.integer(2, 5), b = random.integer(2, 5);
+  const double c = random.integer(1, static_cast<int>(a) - 1), d = random.integer(1, static_cast<int>(b) - 1);
+  if (random.one_in(3)) return {{{0, 0}, {a, 0}, {a, b}, {0, b}}};
+  if (random.one_in(2)) return {{{0, 0}, {a, 0}, {a, b}, {c, b}, {c, d}, {0, d}}};
+  return {{{0, 0}, {a, 0}, {a, d}, {a + 1, d}, {a + 1, b}, {0, b}}};
+}
+
+}  // namespace
+
+PlainScene random_plain_room(Random& random) {
+  PlainScene room;
+  const FloorPlan plan = random_plan(random);
+  add_room(room, prism(plan, 0.0, random.integer(1, 3)));
+  return room;
+}
+
+// Every face with corners of its own, all within `moved` of where they were in each coordinate.
+PlainScene with_moved_corners(const PlainScene& room, double moved, std::uint64_t seed) {
+  Random random(seed);
+  PlainScene result;
+  for (const generate::PlainPatch& patch : room.patches) {
+    for (const generate::PlainFace& face : patch.faces) {
+      std::vector<Vec3> ring;
+      for (const std::uint32_t corner : face.rings.front()) {
+        Vec3 v = room.vertices[corner];
+        for (double* x : {&v.x, &v.y, &v.z}) *x += random.between(-moved, moved);
+        ring.push_back(v);
+      }
+      result.add_ring(result.patch(patch.name), ring);
+    }
+  }
+  return result;
+}
+
 }  // namespace exactff::validation

@@ -46,4 +46,10 @@ struct ClosedRoom {
 // A room, and things, that are hulls of random points.
 [[nodiscard]] generate::PlainScene random_hull_room(generate::Random& random);
 
+// A room of whole coordinates with walls along the axes.
+[[nodiscard]] generate::PlainScene random_plain_room(generate::Random& random);
+// Every face with corners of its own, all within `moved` of where they were in each coordinate.
+[[nodiscard]] generate::PlainScene with_moved_corners(const generate::PlainScene& room, double moved,
+                                                      std::uint64_t seed);
+
 }  // namespace exactff::validation

@@ -292,3 +292,36 @@ def test_polygons_with_names_become_patches(tmp_path):
     exec(code, {"exactff": exactff, "surfaces": surfaces})
     scene = exactff.Scene.read(tmp_path / "house.obj")
     assert scene.names == ("floor", "Roof 1") and scene.areas.tolist() == [1.0, 0.5]
+
+
+def test_patches_come_from_geometry_and_selectors():
+    room = exactff.Scene.read(CORNELL, patches="parts")
+    assert "tall_block/1" in room.names and len(room.cells_of("tall_block")) == 1
+    planes = exactff.Scene.read(CORNELL).with_patches("planes")
+    assert len(planes.cells_of("tall_block")) == 5
+    named = planes.with_names({"low": "box:0,0,0,600,1,600", "top": "normal:0,1,0:10 & tall_block"})
+    assert [len(named.faces_of(name)) for name in ("low", "top")] == [1, 1]
+    row = next(patch for patch in named.patches if patch.name == "low")
+    assert row.low[1] == row.high[1] == row.centre[1] == 0.0
+    with pytest.raises(exactff.InputError, match="not a way to make patches"):
+        planes.with_patches("groupes")
+    with pytest.raises(exactff.InputError, match="finds no face"):
+        planes.with_names({"x": "box:0,0,0,1,1,1"})
+
+
+def test_a_room_that_almost_closes_is_welded():
+    generator = np.random.default_rng(7)
+    corners = np.array([[x, y, z] for x in (0, 4) for y in (0, 5) for z in (0, 3)], float)
+    quads = np.array([[0, 2, 6, 4], [1, 5, 7, 3], [0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6]])
+    vertices = corners[quads.ravel()] + generator.uniform(-1e-6, 1e-6, (24, 3))
+    almost = exactff.Scene(vertices, np.arange(24).reshape(6, 4), patch=np.arange(6))
+    gap = almost.report().gap
+    assert gap.open_edges == 0 and gap.open_edges_before == 24 and 5e-7 < gap.length < 4e-6
+    assert "almost" not in str(almost.report()) and "gap: " in str(almost.report())
+    welding = almost.welded(4e-6)
+    assert welding.corners_before == 24 and welding.corners == 8 and welding.largest_move < 4e-6
+    assert welding.vanished == welding.sheets == () and welding.scene.report().open_edges == 0
+    assert welding.scene.welded(4e-6).largest_move == 0.0
+    assert welding.scene.gap() is None
+    with pytest.raises(exactff.InputError):
+        almost.welded(0.0)

@@ -126,7 +126,7 @@ void fill(HonestyScene& scene, std::uint64_t number, const HonestySize& size) {
 
 // An internal error is a result here, among thousands of others.
 HonestyScene scene_with_entries(std::uint64_t number, const HonestySize& size) {
-  HonestyScene scene = honesty_scene(number);
+  HonestyScene scene = honesty_scene(number, size.families);
   try {
     fill(scene, number, size);
   } catch (const std::logic_error& error) {
@@ -162,7 +162,18 @@ ErrorRatio error_ratio(const ViewFactor& entry, const Bounds& truth) {
           std::max(std::abs(entry.value - truth.lower), std::abs(entry.value - truth.upper)) / reported};
 }
 
-HonestyScene honesty_scene(std::uint64_t number) {
+HonestyScene honesty_scene(std::uint64_t number, HonestyFamilies families) {
+  if (families == HonestyFamilies::kAlmostClosed) {
+    const std::size_t family = number % kAlmostClosedFamilies.size();
+    return {std::string(kAlmostClosedFamilies[family]) + ", seed " + std::to_string(number),
+            kHardFamilies.size() + family + 1,
+            number,
+            "floor",
+            "source",
+            number / 32 % 2 == 0,
+            {},
+            {}};
+  }
   constexpr std::array<const char*, 3> kModels{"karkanis", "soup", "lattice"};
   constexpr std::array<double, 4> kCovers{0.25, 0.5, 1.0, 2.0};
   constexpr std::array<std::pair<const char*, const char*>, 4> kPairs{

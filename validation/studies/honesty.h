@@ -20,7 +20,13 @@
 
 namespace exactff::experiments {
 
+enum class HonestyFamilies {
+  kAll,           // models and hard families, by turns
+  kAlmostClosed,  // those of rooms, dishes and streets that almost close
+};
+
 struct HonestySize {
+  HonestyFamilies families = HonestyFamilies::kAll;
   std::uint64_t first = 1;  // the numbers of the scenes: first, first + 1, ...
   std::uint64_t scenes = 100;
   std::vector<double> accuracies = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
@@ -90,7 +96,7 @@ struct HonestyStudy {
 };
 
 // A random scene's model, and the names of the two patches. Depends on the number alone.
-[[nodiscard]] HonestyScene honesty_scene(std::uint64_t number);
+[[nodiscard]] HonestyScene honesty_scene(std::uint64_t number, HonestyFamilies families = HonestyFamilies::kAll);
 [[nodiscard]] Scene scene_of(const HonestyScene& named);
 [[nodiscard]] HonestyStudy honesty_study(const HonestySize& size, int threads, const Hooks& hooks);
 [[nodiscard]] std::vector<HonestyRow> honesty_rows(std::span<const HonestyScene> scenes);

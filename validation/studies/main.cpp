@@ -22,6 +22,9 @@ struct Arguments {
 
 void declare(CLI::App& app, Arguments& args) {
   app.add_option("--scenes", args.size.scenes, "Number of random scenes")->capture_default_str();
+  app.add_flag_callback(
+      "--almost-closed", [&] { args.size.families = HonestyFamilies::kAlmostClosed; },
+      "Only rooms, dishes and streets whose corners or walls are off by 1e-15 to 1e-3");
   app.add_option("--first", args.size.first, "Number of the first scene")->capture_default_str();
   app.add_option("--threads", args.threads, "Number of threads (default: all)")->check(CLI::Range(1, 4096));
   app.add_option("-o", args.folder, "Folder for the report and the tables")->required();

@@ -52,6 +52,12 @@ Ball pi(long bits) {
   return result;
 }
 
+double cosine_of_degrees(double degrees) {
+  constexpr long kBits = 256;
+  const Ball turns = ball_of<arb_cos_pi>(to_ball(degrees, kBits) / to_ball(180.0, kBits));
+  return nearest_to_midpoint(turns);
+}
+
 Ball with_bits(Ball ball, long bits) {
   Ball result(bits);
   arb_swap(result.get(), ball.get());

@@ -97,6 +97,8 @@ Ball to_ball(const Rational& value, long bits);
 // Exactly the number.
 Ball to_ball(double value, long bits);
 Ball pi(long bits);
+// The double nearest to the cosine of an angle in degrees.
+double cosine_of_degrees(double degrees);
 // The same ball with another number of bits.
 Ball with_bits(Ball ball, long bits);
 // Contains every number within `error` of hi + lo; the error may be infinite.

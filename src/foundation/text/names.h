@@ -88,4 +88,11 @@ inline std::optional<NumberedName> numbered_name(std::string_view name) {
   return result;
 }
 
+// The same of NAME/k, too: of patches that are made from geometry.
+inline std::optional<NumberedName> part_name(std::string_view name) {
+  std::string copy(name);
+  if (const std::size_t last = copy.find_last_of(":/"); last != std::string::npos) copy[last] = ':';
+  return numbered_name(copy);
+}
+
 }  // namespace exactff::text

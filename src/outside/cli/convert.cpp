@@ -1,8 +1,11 @@
 // exactff convert: writes a scene, or a table, in another format.
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/commands.h"
@@ -31,6 +34,12 @@ constexpr const char* kConvertFooter =
     "closed surfaces stay closed. Corners are rounded to doubles; how far they are off at most is printed. Cells that "
     "are\n"
     "not exactly planar then are cut into triangles.\n"
+    "--weld LENGTH makes one corner of those that are linked by distances of at most LENGTH, so that walls that miss\n"
+    "each other by roundings close. Each coordinate is the median of theirs. Edges almost along an axis become "
+    "parallel\n"
+    "to it, and open edges get the corners of others that they pass. What moved, vanished, closed or stays bent is\n"
+    "printed; faces that lie closer than LENGTH, face to face, are named and stay two. Welding twice changes nothing.\n"
+    "`exactff info` measures the length that closes a scene.\n"
     "--triangulate cuts all faces into triangles. A face that is not exactly planar becomes the triangles that "
     "exactff\n"
     "takes it for.\n"
@@ -41,16 +50,17 @@ constexpr const char* kConvertFooter =
     "  exactff convert room.obj room.ply\n"
     "  exactff convert @teapot:segments=4 teapot.stl\n"
     "  exactff convert data/scenes/cornell_box.obj cells.obj --divide 50\n"
+    "  exactff convert office.obj closed.obj --weld 1e-5\n"
     "  exactff convert truth.csv truth.npz";
 
 struct ConvertArguments {
   flags::SceneArguments scene;
   std::string out;
   std::string encoding;
+  std::optional<double> weld;
   bool triangulate = false;
   bool force = false;
 
-  [[nodiscard]] Scene load() const { return triangulate ? triangulated(scene.load()) : scene.load(); }
   [[nodiscard]] Encoding chosen_encoding() const {
     return encoding.empty() ? Encoding::kDefault : encoding == "text" ? Encoding::kText : Encoding::kBinary;
   }
@@ -63,7 +73,7 @@ int convert_table(const ConvertArguments& args) {
   if (extension != ".csv" && extension != ".npz" && extension != ".jsonl") {
     text::refuse(out, "cannot hold a table", args.scene.path + " is a table", "name a file .csv, .npz or .jsonl");
   }
-  if (args.triangulate || args.scene.divide || !args.encoding.empty()) {
+  if (args.triangulate || args.weld || args.scene.divide || !args.encoding.empty()) {
     text::refuse(std::filesystem::path(args.scene.path), "is a table, and flags for scenes are given",
                  "a table has no faces", "leave them out");
   }
@@ -74,11 +84,67 @@ int convert_table(const ConvertArguments& args) {
   return 0;
 }
 
+// "a, b and 12 more".
+std::string listed_faces(const Scene& scene, const std::vector<FaceId>& faces) {
+  constexpr std::size_t kShown = 12;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < std::min(kShown, faces.size()); ++i)
+    names.push_back(text::printable(scene.name_of(faces[i])));
+  if (faces.size() > kShown) names.push_back(std::to_string(faces.size() - kShown) + " more");
+  return text::enumerate(names);
+}
+
+void print_welding(const Scene& before, const WeldedScene& welded, double length) {
+  const auto note = [](const std::string& text) { std::cerr << "note: " << text << '\n'; };
+  note("welded within " + text::shortest(length) + ": " + text::counted(welded.corners_before, "corner") + " became " +
+       std::to_string(welded.corners) +
+       (welded.largest_move == 0.0 ? "; none moved"
+                                   : "; none moved by more than " + text::short_number(welded.largest_move)));
+  if (welded.junctions > 0)
+    note("faces got " + text::counted(welded.junctions, "corner") + " of others that lie on their open edges");
+  if (!welded.vanished.empty())
+    note(text::counted(welded.vanished.size(), "face") + " vanished: " + listed_faces(before, welded.vanished));
+  const std::size_t open = welded.scene.open_edge_count();
+  note("open edges: " + std::to_string(before.open_edge_count()) + " before, " + std::to_string(open) + " now" +
+       (open == 0 ? "; the surface is closed" : ""));
+  std::vector<FaceId> bent;
+  for (std::size_t f = 0; f < welded.scene.faces().size(); ++f) {
+    if (welded.scene.faces()[f].shape == FaceShape::kTriangulated) bent.push_back(static_cast<FaceId>(f));
+  }
+  if (!bent.empty())
+    note(text::counted(bent.size(), "face") + (bent.size() == 1 ? " is" : " are") +
+         " not exactly planar, and counted as triangles: " + listed_faces(welded.scene, bent));
+  std::vector<Problem> warnings;
+  for (const WeldedScene::Sheets& sheets : welded.sheets) {
+    warnings.push_back(
+        {.what = text::in_quotes(welded.scene.name_of(sheets.one)) + " and " +
+                 text::in_quotes(welded.scene.name_of(sheets.other)) +
+                 (sheets.apart == 0.0 ? " now lie on each other"
+                                      : " lie face to face, " + text::short_number(sheets.apart) + " apart"),
+         .why = "faces that close to each other are not made one",
+         .suggestion = "remove one of them if only one is meant"});
+  }
+  print_warnings(warnings);
+}
+
+Scene loaded(const ConvertArguments& args) {
+  flags::SceneArguments undivided = args.scene;
+  const std::optional<double> length = std::exchange(undivided.divide, {});
+  Scene scene = undivided.load();
+  print_warnings(scene.warnings());
+  if (args.weld) {
+    WeldedScene welded = exactff::welded(scene, *args.weld);
+    print_welding(scene, welded, *args.weld);
+    scene = std::move(welded.scene);
+  }
+  if (length) scene = flags::divided_with_note(scene, *length);
+  return args.triangulate ? triangulated(scene) : std::move(scene);
+}
+
 int run(const ConvertArguments& args) {
   require_free_file(args.out, args.force);  // checked before anything that takes time
   if (!table::kind_of(args.scene.path).empty()) return convert_table(args);
-  const Scene scene = args.load();
-  print_warnings(scene.warnings());
+  const Scene scene = loaded(args);
   const SceneFiles result = scene_files(scene, args.out, args.chosen_encoding());
   for (const SceneFiles::File& file : result.files) require_free_file(file.path, args.force);
   print_warnings(result.losses);
@@ -100,6 +166,11 @@ Command add_convert(CLI::App& app) {
       ->add_option("OUT", args->out, "File to write: .obj, .ply, .stl, .off or .vs3; of a table: .csv, .npz or .jsonl")
       ->required()
       ->check(flags::is_written(flags::Format::kScene, flags::Beside::kMaterials));
+  command
+      ->add_option("--weld", args->weld,
+                   "Make one corner of those within this distance of each other, before anything is divided")
+      ->type_name("LENGTH")
+      ->check(flags::is_positive);
   command->add_flag("--triangulate", args->triangulate, "Cut all faces into triangles, at their own vertices");
   command->add_option("--encoding", args->encoding, "Form of PLY (otherwise binary) and STL (otherwise text)")
       ->check(CLI::IsMember({"text", "binary"}));

@@ -18,6 +18,7 @@
 #include "flags/values.h"
 #include "text/escape.h"
 #include "text/json_document.h"
+#include "text/phrases.h"
 
 namespace exactff::cli {
 
@@ -67,6 +68,20 @@ std::string colour_text(const Scene& scene, const PatchSummary& row, Rgb Materia
   const Rgb& first = scene.material(row.materials.front()).*colour;
   const auto same = [&](MaterialId id) { return scene.material(id).*colour == first; };
   return std::all_of(row.materials.begin(), row.materials.end(), same) ? short_colour(first) : "mixed";
+}
+
+std::string point_text(const Vec3& v) {
+  return fmt::format("({}, {}, {})", six_digits(v.x), six_digits(v.y), six_digits(v.z));
+}
+
+// Where the patches are, so that one knows which of those from geometry is meant.
+void print_places(const std::vector<PatchSummary>& rows) {
+  TextTable table;
+  table.add_columns({"patch", "centre", "from", "to"});
+  for (const PatchSummary& row : rows) {
+    table.add_row({row.name, point_text(row.centre), point_text(row.low), point_text(row.high)});
+  }
+  table.print(std::cout);
 }
 
 void print_patches(const Scene& scene, const std::vector<PatchSummary>& rows) {
@@ -132,6 +147,15 @@ void print_faces(const Scene& scene) {
             << (open == 0 ? " (the surface is closed)" : " (an odd number of faces uses them)") << '\n';
 }
 
+void print_gap(const Scene& scene, const flags::SceneArguments& arguments) {
+  const std::optional<Gap> found = gap(scene);
+  if (!found) return;
+  std::cout << "gap: corners that should be one are up to " << six_digits(found->length) << " apart; exactff convert "
+            << text::shell_word(arguments.path) << flags::command_words(*arguments.command, {"--json"})
+            << " OUT.obj --weld " << text::shortest(found->length) << " leaves " << found->open_edges << " of "
+            << found->open_edges_before << " open edges\n";
+}
+
 void print_contacts(const Scene& scene) {
   const std::vector<slips::Contact> contacts = slips::buried_parts(scene);
   if (contacts.empty()) return;
@@ -165,9 +189,14 @@ void print_text(const Scene& scene, const flags::SceneArguments& arguments) {
   const std::vector<PatchSummary> rows = summarise(scene);
   print_patches(scene, rows);
   std::cout << '\n';
+  if (arguments.patches != "groups" || !arguments.names.empty() || !arguments.names_file.empty()) {
+    print_places(rows);
+    std::cout << '\n';
+  }
   print_totals(scene, rows);
   print_list("emitters", emitter_names(scene));
   print_faces(scene);
+  print_gap(scene, arguments);
   print_contacts(scene);
   print_findings(slips::diagnose(scene));
   print_suggestion(scene, arguments);
@@ -184,6 +213,9 @@ ordered_json to_json(const PatchSummary& row, const Scene& scene) {
   json["faces"] = row.face_count;
   json["area"] = row.area;
   json["front"] = row.front ? to_json(*row.front) : ordered_json();
+  json["centre"] = to_json(row.centre);
+  json["low"] = to_json(row.low);
+  json["high"] = to_json(row.high);
   json["materials"] = ordered_json::array();
   for (const MaterialId id : row.materials) {
     const Material& material = scene.material(id);
@@ -226,6 +258,11 @@ void print_json(const Scene& scene, const flags::SceneArguments& arguments) {
   json["pieces"] = scene.pieces().size();
   json["area"] = total_area(rows);
   json["open_edges"] = scene.open_edge_count();
+  json["gap"] = nullptr;
+  if (const std::optional<Gap> found = gap(scene)) {
+    json["gap"] = {
+        {"length", found->length}, {"open_edges_before", found->open_edges_before}, {"open_edges", found->open_edges}};
+  }
   json["patches"] = ordered_json::array();
   for (const PatchSummary& row : rows) json["patches"].push_back(to_json(row, scene));
   json["emitters"] = emitter_names(scene);

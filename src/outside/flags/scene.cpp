@@ -35,6 +35,16 @@ std::vector<Selection> changed(const Scene& scene, const std::string& flag, cons
   return selections;
 }
 
+// The complaint about a value of --patches; completion offers the words in braces.
+std::string not_a_way(const std::string& patches) {
+  try {
+    (void)scene_options(patches);
+    return {};
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
 }  // namespace
 
 Scene divided_with_note(const Scene& scene, double length) {
@@ -55,10 +65,21 @@ void SceneArguments::add_to(CLI::App& app) {
                  "@MODEL[:SETTING=VALUE,...] for a generated scene: `exactff info @` lists them")
       ->required()
       ->check(is_read());
-  app.add_option("--patches", patches,
-                 "What a patch is: groups (g lines; without them, o lines) or faces (each face is a patch NAME:k)")
-      ->check(CLI::IsMember({"groups", "faces"}))
+  app.add_option(
+         "--patches", patches,
+         "What a patch is: groups (g lines; without them, o lines) or faces (each face is a patch NAME:k); or, as "
+         "patches NAME/1, NAME/2, ... of each group by falling area: planes (connected faces in one plane), "
+         "smooth[:DEGREES] (connected faces that bend by less; default 30) or parts (connected faces)")
+      ->check(CLI::Validator(not_a_way, "{groups,faces,planes,smooth,parts}"))
       ->capture_default_str();
+  app.add_option("--name", names,
+                 "NAME=SELECTOR: a name for faces. SELECTOR is box:X0,Y0,Z0,X1,Y1,Z1 (faces inside), "
+                 "normal:X,Y,Z[:DEGREES] (fronts within 5 degrees), plane:A,B,C,D[:DISTANCE] (on A x + B y + C z = D), "
+                 "PATCH:1-20,25 or PATCH, or several of them with ' & ' between; can be repeated")
+      ->type_name("NAME=SELECTOR")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_read(app, "--names", names_file, "File with NAME=SELECTOR on each line, read before --name");
   app.add_flag("--skip-bad-faces", skip_bad_faces, "Leave out unusable faces with a warning instead of stopping");
   add_names(app, "--flip", flip, "Turn this patch or face round, or all: its front becomes its back");
   add_names(app, "--transparent", transparent,
@@ -75,8 +96,7 @@ void SceneArguments::add_divide_to(CLI::App& app) {
 }
 
 SceneOptions SceneArguments::options() const {
-  return {skip_bad_faces ? BadFaces::kSkip : BadFaces::kReject,
-          patches == "faces" ? PatchMode::kFaces : PatchMode::kGroups};
+  return scene_options(patches, skip_bad_faces ? BadFaces::kSkip : BadFaces::kReject);
 }
 
 Scene SceneArguments::load() const {
@@ -84,6 +104,9 @@ Scene SceneArguments::load() const {
                 : path.starts_with('@') ? models::make_scene(path.substr(1), options())
                                         : read_scene(path, options());
   if (command != nullptr) require_not_written(*command, scene.files());
+  std::vector<FaceName> face_names = names_file.empty() ? std::vector<FaceName>() : read_names(names_file);
+  for (const std::string& text : names) face_names.push_back(face_name(text));
+  if (!face_names.empty()) scene = with_names(scene, face_names);
   if (!flip.empty()) scene = scene.with_flipped(changed(scene, "--flip", flip));
   if (!transparent.empty()) scene = scene.with_transparent(changed(scene, "--transparent", transparent));
   return divide ? divided_with_note(scene, *divide) : std::move(scene);

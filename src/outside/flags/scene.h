@@ -19,12 +19,14 @@ namespace exactff::flags {
 
 inline constexpr const char* kStandardInput = "standard input";  // what messages call it
 
-// SCENE, --patches groups|faces, --skip-bad-faces, --flip, --transparent. SCENE is a file, "-" for an OBJ file on
+// SCENE, --patches, --name, --names, --skip-bad-faces, --flip, --transparent. SCENE is a file, "-" for an OBJ file on
 // standard input, or @MODEL[:SETTING=VALUE,...] (exactff/models.h). A name that begins with @ always means a model;
 // write ./@NAME for a file of that name.
 struct SceneArguments {
   std::string path;
   std::string patches = "groups";
+  std::vector<std::string> names;  // NAME=SELECTOR
+  std::string names_file;
   bool skip_bad_faces = false;
   std::vector<std::string> flip, transparent;  // each a name, a comma list of names, or "all"
   std::optional<double> divide;                // of commands with add_divide_to()
@@ -35,8 +37,9 @@ struct SceneArguments {
   [[nodiscard]] bool from_standard_input() const { return path == "-"; }
 
   [[nodiscard]] SceneOptions options() const;
-  // Reads or generates the scene, changes it as --flip and --transparent say, and divides it, with a note on standard
-  // error. Throws InputError, also if an output of the command would replace a file that the scene was read from.
+  // Reads or generates the scene, names faces, changes it as --flip and --transparent say, and divides it, with a note
+  // on standard error. Throws InputError, also if an output of the command would replace a file that the scene was read
+  // from.
   [[nodiscard]] Scene load() const;
 };
 

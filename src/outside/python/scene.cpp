@@ -42,18 +42,18 @@ using Shared = std::shared_ptr<SharedScene>;
 
 Shared shared(Scene scene) { return std::make_shared<SharedScene>(std::move(scene)); }
 
-SceneOptions options_of(bool by_faces, bool skip_bad_faces) {
-  return {skip_bad_faces ? BadFaces::kSkip : BadFaces::kReject, by_faces ? PatchMode::kFaces : PatchMode::kGroups};
+SceneOptions options_of(const std::string& patches, bool skip_bad_faces) {
+  return scene_options(patches, skip_bad_faces ? BadFaces::kSkip : BadFaces::kReject);
 }
 
-Shared read_file(const std::filesystem::path& path, bool by_faces, bool skip_bad_faces) {
+Shared read_file(const std::filesystem::path& path, const std::string& patches, bool skip_bad_faces) {
   const py::gil_scoped_release released;
-  return shared(read_scene(path, options_of(by_faces, skip_bad_faces)));
+  return shared(read_scene(path, options_of(patches, skip_bad_faces)));
 }
 
-Shared from_model(const std::string& text, bool by_faces) {
+Shared from_model(const std::string& text, const std::string& patches) {
   const py::gil_scoped_release released;
-  return shared(models::make_scene(text, options_of(by_faces, false)));
+  return shared(models::make_scene(text, options_of(patches, false)));
 }
 
 // Faces are runs of `corners`, face f from starts[f] to starts[f + 1].
@@ -152,7 +152,7 @@ py::list patches_of(const SharedScene& self) {
     }
     rows.append(py::make_tuple(row.name, faces, row.area,
                                row.front ? py::object(to_tuple(*row.front)) : py::object(py::none()), materials,
-                               row.emits));
+                               row.emits, to_tuple(row.centre), to_tuple(row.low), to_tuple(row.high)));
   }
   return rows;
 }
@@ -238,12 +238,41 @@ py::tuple divided_of(const SharedScene& self, double length) {
   return py::make_tuple(shared(std::move(made.scene)), made.largest_deviation);
 }
 
+// The scene, what moved and by how much at most, junctions, names of faces that vanished, pairs of sheets.
+py::tuple welded_of(const SharedScene& self, double length) {
+  WeldedScene made = [&] {
+    const py::gil_scoped_release released;
+    return welded(self.scene(), length);
+  }();
+  py::list vanished, sheets;
+  for (const FaceId face : made.vanished) vanished.append(self.scene().name_of(face));
+  for (const WeldedScene::Sheets& one : made.sheets) {
+    sheets.append(py::make_tuple(made.scene.name_of(one.one), made.scene.name_of(one.other), one.apart));
+  }
+  return py::make_tuple(shared(std::move(made.scene)), made.corners_before, made.corners, made.largest_move,
+                        made.junctions, vanished, sheets);
+}
+
+// Length, open edges before and after; None for no gap.
+py::object gap_of(const SharedScene& self) {
+  Interrupt interrupt;
+  const std::optional<Gap> found = interrupt.run([&] { return gap(self.scene()); });
+  if (!found) return py::none();
+  return py::make_tuple(found->length, found->open_edges_before, found->open_edges);
+}
+
+Shared with_face_names(const SharedScene& self, const std::vector<std::pair<std::string, std::string>>& names) {
+  std::vector<FaceName> list;
+  for (const auto& [name, selector] : names) list.push_back({name, selector});
+  return shared(with_names(self.scene(), list));
+}
+
 }  // namespace
 
 void bind_scene(py::module_& module) {
   py::class_<SharedScene, Shared>(module, "Scene")
-      .def_static("read", &read_file, py::arg("path"), py::arg("by_faces"), py::arg("skip_bad_faces"))
-      .def_static("from_model", &from_model, py::arg("text"), py::arg("by_faces"))
+      .def_static("read", &read_file, py::arg("path"), py::arg("patches"), py::arg("skip_bad_faces"))
+      .def_static("from_model", &from_model, py::arg("text"), py::arg("patches"))
       .def_static(
           "build",
           [](const Numbers& vertices, const Integers& corners, const Integers& starts, const Integers& patches,
@@ -253,7 +282,7 @@ void bind_scene(py::module_& module) {
             std::vector<MaterialRow> list;
             for (const auto& [name, kd, ke] : rows) list.push_back({name, kd, ke});
             return build(vertices, {corners, starts, patches, materials}, patch_names, list,
-                         options_of(false, skip_bad_faces));
+                         options_of("groups", skip_bad_faces));
           },
           py::arg("vertices"), py::arg("corners"), py::arg("starts"), py::arg("patches"), py::arg("materials"),
           py::arg("patch_names"), py::arg("material_rows"), py::arg("skip_bad_faces"))
@@ -290,6 +319,15 @@ void bind_scene(py::module_& module) {
       .def("emitters", [](const SharedScene& s) { return names_of(s.scene(), s.scene().emitters()); })
       .def("with_flipped", &with_flipped, py::arg("names"))
       .def("with_transparent", &with_transparent, py::arg("names"))
+      .def(
+          "with_patches",
+          [](const SharedScene& s, const std::string& patches) {
+            return shared(with_patches(s.scene(), scene_options(patches)));
+          },
+          py::arg("patches"))
+      .def("with_names", &with_face_names, py::arg("names"))
+      .def("welded", &welded_of, py::arg("length"))
+      .def("gap", &gap_of)
       .def("divided", &divided_of, py::arg("length"))
       .def(
           "cells_of",

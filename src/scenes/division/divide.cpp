@@ -482,7 +482,7 @@ void require_names_of_no_cells(const std::vector<CutPatch>& patches) {
   std::map<std::string, bool, std::less<>> is_cut;
   for (const auto& [name, cells] : patches) is_cut[name] = cells.size() > 1;
   for (const auto& [name, cells] : patches) {
-    for (auto parts = text::numbered_name(name); parts; parts = text::numbered_name(parts->patch)) {
+    for (auto parts = text::part_name(name); parts; parts = text::part_name(parts->patch)) {
       const auto whole = is_cut.find(parts->patch);
       if (whole == is_cut.end() || !(whole->second || cells.size() > 1)) continue;
       text::refuse("divided, the patch " + text::in_quotes(name, text::kShownName) + " would count as cells of " +

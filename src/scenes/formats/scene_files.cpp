@@ -420,4 +420,24 @@ Scene read_scene(const std::filesystem::path& path, const SceneOptions& options)
   return SceneInside::read_from(path, read_scene(text::read_file(path, kAnyFormat), path, options));
 }
 
+std::vector<FaceName> read_names(const std::filesystem::path& path) {
+  const std::string text = text::read_text_file(path, "a file of names for faces");
+  text::ProblemList problems;
+  std::vector<FaceName> names;
+  text::TextLines lines(text);
+  for (text::TextLine line; lines.next(line);) {
+    if (line.text.empty()) continue;
+    try {
+      names.push_back(face_name(line.text));
+    } catch (const InputError& error) {
+      Problem problem = error.problems().front();
+      problem.file = path.string();
+      problem.line = line.number;
+      problems.add(std::move(problem));
+    }
+  }
+  problems.throw_if_any();
+  return names;
+}
+
 }  // namespace exactff

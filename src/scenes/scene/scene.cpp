@@ -108,9 +108,9 @@ Selection Scene::select(std::string_view name) const {
 
 namespace {
 
-// Whether the name is `whole`, followed by numbers after colons.
+// Whether the name is `whole`, followed by numbers after colons or slashes.
 bool is_part_of(const std::string& name, std::string_view whole) {
-  for (auto parts = text::numbered_name(name); parts; parts = text::numbered_name(parts->patch)) {
+  for (auto parts = text::part_name(name); parts; parts = text::part_name(parts->patch)) {
     if (parts->patch == whole) return true;
   }
   return false;
@@ -373,16 +373,46 @@ std::optional<Vec3> common_front(const Scene& scene, const std::vector<FaceId>& 
 // An estimate. Clamped to finite numbers, as the areas of faces are.
 double sum_of_areas(double a, double b) { return std::min(a + b, std::numeric_limits<double>::max()); }
 
+// Its corners and, weighted by its area, the mean of its pieces' centres.
+void add_place(const Scene& scene, const Face& face, PatchSummary& summary) {
+  Vec3 moment;
+  double whole = 0.0;
+  for (std::uint32_t p = 0; p < face.piece_count; ++p) {
+    const std::span<const std::uint32_t> corners = scene.corners(scene.pieces()[face.first_piece + p]);
+    const Vec3& a = scene.vertices()[corners[0]];
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+      const Vec3 &b = scene.vertices()[corners[i]], &c = scene.vertices()[corners[i + 1]];
+      const double area = kernel::length(kernel::cross(kernel::difference(b, a), kernel::difference(c, a)));
+      moment = kernel::along(moment, kernel::scaled(kernel::sum(kernel::sum(a, b), c), 1.0 / 3.0), area);
+      whole += area;
+    }
+  }
+  if (whole > 0.0) summary.centre = kernel::along(summary.centre, moment, face.area / whole);
+  for (const auto& ring : face.rings) {
+    for (const std::uint32_t v : ring) {
+      const Vec3& x = scene.vertices()[v];
+      summary.low = {std::min(summary.low.x, x.x), std::min(summary.low.y, x.y), std::min(summary.low.z, x.z)};
+      summary.high = {std::max(summary.high.x, x.x), std::max(summary.high.y, x.y), std::max(summary.high.z, x.z)};
+    }
+  }
+}
+
 }  // namespace
 
 PatchSummary summarise(const Scene& scene, PatchId id) {
   const Patch& patch = scene.patch(id);
   const std::vector<FaceId> faces = scene.faces_of({id, {}});
   PatchSummary summary{patch.name, patch.faces.size(), 0.0, common_front(scene, faces), materials_of(scene, patch)};
+  if (!faces.empty()) {
+    summary.low = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    summary.high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  }
   for (const FaceId face : faces) {
     summary.area = sum_of_areas(summary.area, scene.face(face).area);
+    add_place(scene, scene.face(face), summary);
     summary.emits = summary.emits || scene.material(scene.face(face).material).emits();
   }
+  if (summary.area > 0.0) summary.centre = kernel::scaled(summary.centre, 1.0 / summary.area);
   return summary;
 }
 

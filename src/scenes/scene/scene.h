@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "exactff/scene.h"
@@ -64,6 +66,11 @@ struct SceneInside {
   // For a scene that nothing else uses yet.
   static Scene read_from(const std::filesystem::path& file, Scene scene) {
     scene.data_->files.insert(scene.data_->files.begin(), file);
+    return scene;
+  }
+  static Scene of(std::unique_ptr<Data> data) {
+    Scene scene(std::move(data));
+    scene.set_warnings_of_glass();
     return scene;
   }
 };

@@ -135,7 +135,7 @@ Scene SceneBuilder::build() {
   state.data->warnings = state.warnings.take("warnings");
   Scene scene(std::move(state.data));
   scene.set_warnings_of_glass();
-  return scene;
+  return state.options.patches > PatchMode::kFaces ? with_patches(scene, state.options) : std::move(scene);
 }
 
 void SceneBuilder::State::check_vertices() {

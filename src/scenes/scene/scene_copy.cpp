@@ -170,6 +170,27 @@ std::set<FaceId> all_faces_of(const Scene& scene, std::span<const Selection> sel
 
 }  // namespace
 
+Scene regrouped(const Scene& scene, const std::vector<std::string>& names,
+                const std::vector<std::size_t>& patch_of_face) {
+  auto copy = copy_of(SceneInside::data(scene));
+  std::vector<std::vector<FaceId>> faces(names.size());
+  for (std::size_t f = 0; f < patch_of_face.size(); ++f) faces[patch_of_face[f]].push_back(static_cast<FaceId>(f));
+  copy->patches.clear();
+  copy->patch_by_name.clear();
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    if (faces[p].empty()) continue;
+    const auto patch = static_cast<PatchId>(copy->patches.size());
+    for (std::size_t k = 0; k < faces[p].size(); ++k) {
+      Face& face = copy->faces[index_of(faces[p][k])];
+      face.patch = patch;
+      face.number = static_cast<std::uint32_t>(k + 1);
+    }
+    copy->patch_by_name.emplace(names[p], patch);
+    copy->patches.push_back({names[p], std::move(faces[p])});
+  }
+  return SceneInside::of(std::move(copy));
+}
+
 Scene Scene::with_flipped(std::span<const Selection> selections) const {
   const kernel::StandardArithmetic arithmetic;
   auto copy = copy_of(data());

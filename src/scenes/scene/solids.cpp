@@ -7,31 +7,17 @@
 
 #include <boost/container/small_vector.hpp>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "kernel/numbers.h"
 #include "kernel/vec.h"
 #include "scene/edges.h"
+#include "scene/groups.h"
 #include "scene/scene.h"
 
 namespace exactff {
 namespace {
-
-// Unions of pieces.
-class Groups {
- public:
-  explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  std::uint32_t root(std::uint32_t of) {
-    while (parent_[of] != of) of = parent_[of] = parent_[parent_[of]];
-    return of;
-  }
-  void join(std::uint32_t a, std::uint32_t b) { parent_[root(a)] = root(b); }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 // Where the pieces of an edge lie round it.
 class Dial {

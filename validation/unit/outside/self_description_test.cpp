@@ -85,7 +85,8 @@ TEST(Completion, BashOffersTheChoicesOfAnOption) {
   EXPECT_EQ(offered_by_bash({"exactff", "point", "room.obj", "--engine", ""}), (Offers{"edges", "boolean", "both"}));
   EXPECT_EQ(offered_by_bash({"exactff", "point", "--engine", "b"}), (Offers{"boolean", "both"}));
   EXPECT_EQ(offered_by_bash({"exactff", "info", "--patches", "=", "f"}), Offers{"faces"});
-  EXPECT_EQ(offered_by_bash({"exactff", "info", "--patches", "="}), (Offers{"groups", "faces"}));
+  EXPECT_EQ(offered_by_bash({"exactff", "info", "--patches", "="}),
+            (Offers{"groups", "faces", "planes", "smooth", "parts"}));
 }
 
 TEST(Completion, BashOffersFilesForScenes) {

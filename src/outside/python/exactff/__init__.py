@@ -36,7 +36,7 @@ from . import methods
 from ._arguments import InputError, ModellingWarning, Problem
 from ._check import (check, CheckReport, Distribution, Improvement, RowError, scoreboard, Scoreboard, truth,
                      TruthSummary, Verdict)
-from ._geometry import Contact, Finding, Material, Patch, Receivers, Report
+from ._geometry import Contact, Finding, Gap, Material, Patch, Receivers, Report, Welding
 from ._pair import DerivativeStatus, Drawing, Enclosure, FormFactor, FormFactors, Gradient, Status, VertexGradient
 from ._scene import Scene
 from ._views import (Balance, ExchangeFactors, PairOfPatches, radiosity, Radiosity, Reciprocity, SeenPatch, Share, Temperatures, View,
@@ -46,9 +46,9 @@ __version__ = _exactff.version
 
 __all__ = [
     "Balance", "CheckReport", "Contact", "DerivativeStatus", "Distribution", "Drawing", "Enclosure", "Finding", "FormFactor",
-    "ExchangeFactors", "FormFactors", "Gradient", "Improvement", "InputError", "Material", "ModellingWarning", "PairOfPatches", "Patch", "Problem", "Radiosity", "Receivers",
+    "ExchangeFactors", "FormFactors", "Gap", "Gradient", "Improvement", "InputError", "Material", "ModellingWarning", "PairOfPatches", "Patch", "Problem", "Radiosity", "Receivers",
     "Reciprocity", "Report", "RowError",
-    "Scene", "Scoreboard", "SeenPatch", "Share", "Status", "Temperatures", "TruthSummary", "Verdict", "VertexGradient", "View", "ViewFactor", "ViewFactorMatrix",
+    "Scene", "Scoreboard", "SeenPatch", "Share", "Status", "Temperatures", "TruthSummary", "Verdict", "VertexGradient", "View", "ViewFactor", "ViewFactorMatrix", "Welding",
     "__version__", "check", "methods", "radiosity", "scoreboard", "truth", "view", "view_factor",
     "view_factor_matrix",
 ]

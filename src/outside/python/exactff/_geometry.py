@@ -27,6 +27,29 @@ class Patch(NamedTuple):
     front: Optional[tuple[float, float, float]]  #: mean unit normal; None if the faces have different directions
     materials: tuple[Material, ...]
     emits: bool
+    centre: tuple[float, float, float]  #: of its area; an estimate
+    low: tuple[float, float, float]  #: the lowest coordinates of its faces with area
+    high: tuple[float, float, float]  #: the highest
+
+
+class Gap(NamedTuple):
+    """How far apart corners are that should be one."""
+
+    length: float  #: the smallest one with which `Scene.welded` leaves the fewest open edges, to about two digits
+    open_edges_before: int
+    open_edges: int
+
+
+class Welding(NamedTuple):
+    """What :meth:`Scene.welded` did."""
+
+    scene: Any  #: the new :class:`Scene`
+    corners_before: int  #: positions of corners
+    corners: int
+    largest_move: float
+    junctions: int  #: corners added to edges of faces
+    vanished: tuple[str, ...]  #: faces that have no area any more
+    sheets: tuple[tuple[str, str, float], ...]  #: faces that lie closer than the length, face to face, and how far apart
 
 
 class Finding(NamedTuple):
@@ -62,6 +85,7 @@ class Report(NamedTuple):
     findings: tuple[Finding, ...]
     warnings: tuple[str, ...]
     contacts: tuple[Contact, ...] = ()  #: the largest first
+    gap: Optional[Gap] = None  #: None if no length closes anything
 
     def __str__(self) -> str:
         lines = _table([("patch", "faces", "area", "front", "emits"), *map(_patch_row, self.patches)])
@@ -70,6 +94,9 @@ class Report(NamedTuple):
                   _listed("not exactly planar, cut into triangles", self.not_planar),
                   _listed("zero area, ignored", self.ignored), _listed("unusable, left out", self.left_out),
                   f"open edges: {self.open_edges}"]
+        if self.gap:
+            lines.append(f"gap: corners that should be one are up to {self.gap.length:.6g} apart; scene.welded("
+                         f"{self.gap.length!r}) leaves {self.gap.open_edges} of {self.gap.open_edges_before} open edges")
         lines += [f"contact: {one.share:.3g} of {one.patch} is buried under {one.under}" for one in self.contacts]
         about_contacts = {"on-open-floor", "no-bottom", "near-contact", "overlapping-solids"}
         lines += [f"{'note' if finding.kind in about_contacts else 'check'}: {finding.message}" for finding in self.findings]

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from . import _arguments, _exactff, _geometry
 from ._arguments import check_existing, Floats, Ints, Measure, Names, Progress, refuse, require_free, shown, warn
-from ._geometry import Contact, Finding, Material, Patch, Receivers, Report
+from ._geometry import Contact, Finding, Gap, Material, Patch, Receivers, Report, Welding
 from ._pair import _Again, FormFactor, FormFactors, Status
 
 #: Own faces: None, "auto", "auto:DISTANCE", a name ("floor", "floor:2", "floor:1+2"), indices of faces, or a list of
@@ -64,23 +64,21 @@ class Scene:
         return made
 
     @classmethod
-    def read(cls, path: Union[str, os.PathLike[str]], *, patches: Literal["groups", "faces"] = "groups",
+    def read(cls, path: Union[str, os.PathLike[str]], *, patches: str = "groups",
              skip_bad_faces: bool = False) -> Scene:
-        """Reads an OBJ, PLY, STL, OFF or View3D file. ``patches="faces"`` makes every face a patch NAME:k.
+        """Reads an OBJ, PLY, STL, OFF or View3D file. `patches` says what a patch is: see `with_patches`.
 
         Raises InputError with every problem and its line. Warnings of the file are ModellingWarning."""
-        if patches not in ("groups", "faces"):
-            refuse(f"patches is {patches!r}", "", "choose 'groups' or 'faces'")
         file = os.path.abspath(os.fspath(path))
-        scene = cls._made(_exactff.Scene.read(os.fspath(path), patches == "faces", skip_bad_faces), os.path.basename(file))
+        scene = cls._made(_exactff.Scene.read(os.fspath(path), patches, skip_bad_faces), os.path.basename(file))
         scene._read = (file,)
         return scene
 
     @classmethod
-    def from_model(cls, text: str, *, patches: Literal["groups", "faces"] = "groups") -> Scene:
+    def from_model(cls, text: str, *, patches: str = "groups") -> Scene:
         """A generated scene, such as ``"teapot:segments=8"``; ``exactff info @`` lists the models. The same text gives
         the same bits on every machine."""
-        return cls._made(_exactff.Scene.from_model(text, patches == "faces"), "@" + text)
+        return cls._made(_exactff.Scene.from_model(text, patches), "@" + text)
 
     # --- what it contains ---
 
@@ -146,7 +144,7 @@ class Scene:
                       findings=tuple(Finding(kind, message, tuple(objects), flag)
                                      for kind, message, objects, flag in scene.findings()),
                       warnings=tuple(scene.warnings()),
-                      contacts=tuple(Contact(*one) for one in scene.contacts()))
+                      contacts=tuple(Contact(*one) for one in scene.contacts()), gap=self.gap())
 
     def write(self, path: Union[str, os.PathLike[str]], *, encoding: Literal["default", "text", "binary"] = "default",
               existing: Literal["refuse", "replace"] = "refuse") -> None:
@@ -179,6 +177,35 @@ class Scene:
         twin that is turned round. Factors between other patches stay the same numbers, perhaps in other intervals; what
         met the backs meets the twins. Names as in `with_flipped`."""
         return self._changed(lambda listed: _exactff.with_two_sided(self._scene, listed), names)
+
+    def with_patches(self, patches: str) -> Scene:
+        """The same scene with other patches: "groups" (as they are), "faces" (``NAME:k``), or patches ``NAME/1``,
+        ``NAME/2``, ... of each patch by falling area: "planes" (connected faces in exactly one plane), "smooth" or
+        "smooth:DEGREES" (connected faces whose fronts differ by less; default 30), "parts" (connected faces). Names do
+        not depend on the order of faces. Raises InputError."""
+        return self._changed(lambda _: self._scene.with_patches(patches), ("all",))
+
+    def with_names(self, names: Mapping[str, str]) -> Scene:
+        """The same scene in which the faces that a selector finds are a patch of that name: ``{"left fin":
+        "box:0,0,0,1,20,30"}``. Selectors: ``box:X0,Y0,Z0,X1,Y1,Z1``, ``normal:X,Y,Z[:DEGREES]``,
+        ``plane:A,B,C,D[:DISTANCE]``, ``PATCH:1-20,25``, ``PATCH``, or several with " & " between. They are about this
+        scene; of two that find a face, the later one counts. Raises InputError if one finds nothing."""
+        return self._changed(lambda _: self._scene.with_names(list(names.items())), ("all",))
+
+    def gap(self) -> Optional[Gap]:
+        """How far apart corners are that should be one, so that `welded` with this length closes most; None if no length
+        closes anything."""
+        found = self._scene.gap()
+        return None if found is None else Gap(*found)
+
+    def welded(self, length: float) -> Welding:
+        """The scene in which corners that are linked by distances of at most `length` are one, edges almost along an axis
+        are parallel to it, and open edges have the corners of others that they pass; with what moved and vanished.
+        Welding again changes nothing. Faces never merge. Raises InputError for a length that would move a corner by more
+        than eight times of it."""
+        made, before, corners, move, junctions, vanished, sheets = self._scene.welded(float(length))
+        scene = self._changed(lambda _: made, ("all",))
+        return Welding(scene, before, corners, move, junctions, tuple(vanished), tuple(sheets))
 
     def triangulated(self) -> Scene:
         """The same scene with every face cut into triangles at its own vertices; a face that is not planar becomes the
@@ -476,8 +503,9 @@ class Scene:
 
 
 def _patch(row: Any) -> Patch:
-    name, faces, area, front, materials, emits = row
-    return Patch(name, tuple(faces), area, front, tuple(Material(kd, ke, m) for m, kd, ke in materials), emits)
+    name, faces, area, front, materials, emits, centre, low, high = row
+    return Patch(name, tuple(faces), area, front, tuple(Material(kd, ke, m) for m, kd, ke in materials), emits, centre,
+                 low, high)
 
 
 def _arrays_names(names: Names) -> list[str]:
