@@ -223,9 +223,9 @@ Disc enclosed_area(const Cell& cell, const Plane& receiver) {
   return 0.5 * dot(sum, unit_normal(receiver));
 }
 
-CertifiedIntegral certified_integral(const Formula& formula, const Cell& cell, double tolerance) {
-  const double area = magnitude(enclosed_area(cell, formula.receiver()));
-  const CertifiedIntegral unknown{0.5 * area, 0.5 * area, false};
+CertifiedIntegral certified_integral(const Formula& formula, const Cell& cell, double most, double tolerance) {
+  const double half = 0.5 * most * magnitude(enclosed_area(cell, formula.receiver())) * kUp;
+  const CertifiedIntegral unknown{half, half, false};
   DiscFormula on_cell(formula, cell);
   const auto pieces = quadrilaterals(cell.corners.size());
   const double allowed = 0.5 * tolerance / static_cast<double>(pieces.size());

@@ -103,7 +103,9 @@ struct CertifiedIntegral {
 [[nodiscard]] Disc enclosed_area(const Cell& cell, const Plane& receiver);
 
 // Of the formula over the cell, which must be one on which its boundary is proved, or be continued (cell.h).
-// Where the tolerance is out of reach, all that is known is 0 <= F <= 1: half the area, with this error.
-[[nodiscard]] CertifiedIntegral certified_integral(const Formula& formula, const Cell& cell, double tolerance);
+// Where the tolerance is out of reach, all that is known is 0 <= F <= most: half of that times the area, with this
+// error.
+[[nodiscard]] CertifiedIntegral certified_integral(const Formula& formula, const Cell& cell, double most,
+                                                   double tolerance);
 
 }  // namespace exactff::view_factors

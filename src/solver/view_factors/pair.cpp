@@ -389,7 +389,7 @@ Share::Next Pair::next_of(const Integral& found) const {
 Pair::Integral Pair::enclose(const Formula& formula, const Cell& cell, double most) const {
   const double share = std::sqrt(area(cell) / limits_.area);
   const double tolerance = std::min(most, limits_.certified * share * std::sqrt(share));
-  const CertifiedIntegral found = certified_integral(formula, cell, tolerance);
+  const CertifiedIntegral found = certified_integral(formula, cell, bound_.on(cell), tolerance);
   return {.integral = found.value,
           .error = found.error,
           .rounding = found.is_final ? found.error : 0.0,
