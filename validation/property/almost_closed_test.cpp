@@ -136,7 +136,7 @@ TEST(AlmostClosedRooms, LetOutNoMoreThanIsProved) {
   std::size_t proved = 0, open = 0;
   for (std::uint64_t s = 0; s < scaled_count(16); ++s) {
     Random random(seed_of(s));
-    PlainScene room = random_room(random);
+    PlainScene room = random_plain_room(random);
     const double moved = std::pow(10.0, -12.0 + 10.0 * random.unit());
     const bool is_closed = s % 4 < 2;
     if (s % 4 == 1) add_thing(room, box({0.25, 0.25, 0.0}, {0.75, 0.5, 0.5}));
