@@ -94,8 +94,10 @@ row '402 patches, three cubes, 1e-6, estimated' cubes.obj
 for moved in 0 1e-12 1e-9 1e-6 1e-3; do
   box_room "$moved" > moved.obj
   row "box room of 6 faces, corners moved by $moved, 1e-3, estimated" moved.obj --accuracy 1e-3
+  row 'the same with backs and the sky' moved.obj --accuracy 1e-3 --backs --to all,sky
 done
 for moved in 0 1e-12 1e-9 1e-5; do
   zone "$moved" > moved.obj
   row "L-shaped zone of 10 faces, corners moved by $moved, 1e-3, estimated" moved.obj --accuracy 1e-3
+  row 'the same with backs and the sky' moved.obj --accuracy 1e-3 --backs --to all,sky
 done

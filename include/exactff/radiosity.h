@@ -163,6 +163,9 @@ struct Exchange {
 [[nodiscard]] Exchange exchange(const Scene& scene, const matrix::Matrix& matrix, int threads = 0,
                                 const Hooks& hooks = {});
 
+// What exchange() refuses, and square_of() where a format is given, as far as the scene tells.
+void require_exchangeable(const Scene& scene, const matrix::ProgramFormat* format = nullptr);
+
 // A row for each pair and channel:
 // from,to,channel,exchange,lower,upper,conductor,conductor_lower,conductor_upper,claim. `to` may be (back) or (open);
 // with one channel, it is called `all`. What is infinite or not known is empty.

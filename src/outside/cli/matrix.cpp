@@ -307,6 +307,10 @@ void check_content(const MatrixArguments& args, const Scene& scene, const std::v
     text::refuse("exchange factors are asked for, and not all patches are rows and columns, in their order",
                  "light bounces between all of them", "leave out --from and --to");
   }
+  if (args.exchanges()) radiosity::require_exchangeable(scene);
+  for (const auto& [format, file] : args.program_files()) {
+    if (format->of_conductors) radiosity::require_exchangeable(scene, format);
+  }
   if (!args.balance) return;
   empty.back.resize(from.size());
   empty.open.resize(from.size());

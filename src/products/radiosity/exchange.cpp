@@ -170,15 +170,34 @@ Exchange::Channel channel_of(const Scene& scene, const matrix::Matrix& matrix, c
   return channel;
 }
 
-void require_emissivities(const Scene& scene, const Exchange& exchange, const System& system) {
+void require_emissivities(const Scene& scene, std::span<const Selection> patches, const System& system) {
   for (std::size_t i = 0; i < system.reflectances.size(); ++i) {
     if (system.reflectances[i] <= 1.0) continue;
-    text::refuse("the Kd of " + text::in_quotes(scene.name_of(exchange.patches[i])) + " is above 1",
+    text::refuse("the Kd of " + text::in_quotes(scene.name_of(patches[i])) + " is above 1",
                  "its emissivity 1 - Kd would be negative", "give its material a Kd of at most 1");
   }
 }
 
+void refuse_as_network(const matrix::ProgramFormat& format, const std::string& what, const std::string& remedy) {
+  text::refuse(what, "a network of " + std::string(format.program) + " has one conductor for a pair of nodes", remedy);
+}
+
+void refuse_colours(const matrix::ProgramFormat& format) {
+  refuse_as_network(format, "Kd differs between red, green and blue", "give materials of one Kd in all channels");
+}
+
 }  // namespace
+
+void require_exchangeable(const Scene& scene, const matrix::ProgramFormat* format) {
+  matrix::Factors none{patches_of(scene), {}, {}};
+  std::optional<Numbers> first;
+  for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
+    const System system = system_of(scene, none, c);
+    require_emissivities(scene, none.from, system);
+    if (!first) first = system.reflectances;
+    if (format != nullptr && *first != system.reflectances) refuse_colours(*format);
+  }
+}
 
 Exchange exchange(const Scene& scene, const matrix::Matrix& given, int threads, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
@@ -197,7 +216,7 @@ Exchange exchange(const Scene& scene, const matrix::Matrix& given, int threads, 
   std::vector<Numbers> reflectances;
   for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
     System system = system_of(scene, matrix.factors, c);
-    require_emissivities(scene, result, system);
+    require_emissivities(scene, result.patches, system);
     reflectances.push_back(system.reflectances);
     const auto before = std::ranges::find(reflectances, system.reflectances);
     const auto same = static_cast<std::size_t>(before - reflectances.begin());
@@ -209,11 +228,9 @@ Exchange exchange(const Scene& scene, const matrix::Matrix& given, int threads, 
 }
 
 matrix::Square square_of(const matrix::ProgramFormat& format, const Scene& scene, const Exchange& exchange) {
-  if (exchange.channels.size() != 1 || !exchange.channels.front().is_bounded()) {
-    text::refuse(exchange.channels.size() != 1 ? "Kd differs between red, green and blue"
-                                               : "some exchange factors have no bound",
-                 "a network of " + std::string(format.program) + " has one conductor for a pair of nodes",
-                 exchange.channels.size() != 1 ? "give materials of one Kd in all channels" : "lower Kd below 1");
+  if (exchange.channels.size() != 1) refuse_colours(format);
+  if (!exchange.channels.front().is_bounded()) {
+    refuse_as_network(format, "some exchange factors have no bound", "lower Kd below 1");
   }
   const Exchange::Channel& grey = exchange.channels.front();
   const auto values_of = [](const std::vector<BoundedValue>& all) {

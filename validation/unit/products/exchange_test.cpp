@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -141,6 +142,22 @@ TEST(ExchangeCommand, WritesATableThatIsReadAgain) {
     for (std::size_t j = 0; j < 10; ++j) sum += values[10 * row + j];
     EXPECT_NEAR(sum, 1.0, 1e-13);
   }
+}
+
+// Before any pair is computed.
+TEST(ExchangeCommand, RefusesWhatTheSceneTells) {
+  const validation::TemporaryDirectory folder;
+  const std::string scene = EXACTFF_DATA_DIR "/scenes/cornell_box.obj";
+  const std::filesystem::path conductors = folder.path() / "e.gr", values = folder.path() / "m.csv";
+  const validation::ProgramRun run = validation::run_exactff(
+      {"matrix", scene, "--accuracy", "1e-9", "--certify", "--esatan", conductors.string(), "-o", values.string()});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.error.find("Kd differs between red, green and blue"), std::string::npos) << run.error;
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  PlainScene bright;
+  add_cube(bright, "room", 1.0, true);
+  set_kd(bright, "room", 1.25);
+  EXPECT_THROW(require_exchangeable(generate::build(bright)), InputError);
 }
 
 }  // namespace
