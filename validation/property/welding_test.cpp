@@ -35,7 +35,7 @@ std::vector<std::pair<std::string, std::vector<Place>>> shape_of(const Scene& sc
     for (const auto& ring : face.rings) {
       std::vector<Place> places;
       for (const std::uint32_t v : ring) places.push_back(place_of(scene.vertices()[v]));
-      std::ranges::rotate(places, std::ranges::min_element(places));
+      std::rotate(places.begin(), std::ranges::min_element(places), places.end());
       all.insert(all.end(), places.begin(), places.end());
     }
     faces.emplace_back(scene.patch(face.patch).name, all);

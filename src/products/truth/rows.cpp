@@ -101,7 +101,7 @@ Rows::Rows(Request request) : request_(completed(std::move(request))), columns_o
   }
   columns_ = columns_of_request_.columns();
   measures_ = request_.measures;
-  std::ranges::stable_partition(measures_, [](const Measure& measure) { return !measure.sphere; });
+  std::stable_partition(measures_.begin(), measures_.end(), [](const Measure& measure) { return !measure.sphere; });
   describe(sentences(near_misses(*request_.scene, request_.receivers), request_.receivers.size()));
 }
 
