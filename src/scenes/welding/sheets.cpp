@@ -91,7 +91,7 @@ void SheetFinder::add(std::size_t face, std::size_t other, double apart) {
     return Selection{scene_.faces()[f].patch, static_cast<FaceId>(f), scene_.id()};
   };
   const auto [low, high] = std::minmax(face, other);
-  const std::pair patches(std::minmax(of(low).patch, of(high).patch));
+  const auto patches = std::minmax({of(low).patch, of(high).patch});
   const auto [known, is_new] = found_.try_emplace(patches, WeldedScene::Sheets{of(low), of(high), apart});
   if (!is_new && apart > known->second.apart) known->second = {of(low), of(high), apart};
 }
