@@ -189,6 +189,12 @@ TEST(Welding, NamesFacesThatVanishAndRefusesToMeltAScene) {
   EXPECT_TRUE(holds(complaint([&] { (void)welded(row, 1.0); }), "a chain of corners within this length"));
   EXPECT_EQ(welded(row, 0.99).corners, row.vertices().size() / 4 * 2 + 2);
   for (const double bad : {0.0, -1.0, HUGE_VAL, 1e-60}) EXPECT_NE(complaint([&] { (void)welded(row, bad); }), "");
+  EXPECT_TRUE(holds(complaint([&] { (void)welded(strip, 100.0); }), "nothing is left of the scene"));
+  // Two that would close by becoming nothing.
+  const Scene slivers = scene_of_rings(
+      {{"one", {{0, 0, 0}, {10, 0, 0}, {10, 0.125, 0}}}, {"other", {{0, 0, 0}, {10, 0.125, 0}, {10, 0.25, 0}}}});
+  const std::optional<Gap> found = gap(slivers);
+  EXPECT_TRUE(!found || welded(slivers, found->length).vanished.empty());
 }
 
 }  // namespace

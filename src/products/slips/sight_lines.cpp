@@ -25,6 +25,19 @@ namespace {
 
 constexpr double kSamePlace = 1e-9;  // of the scene's diameter
 
+// Of the piece's own plane: those of a face that is bent lie off the face's.
+Vec3 normal_of(const Scene& scene, const Piece& piece) {
+  const auto corners = scene.corners(piece);
+  const Vec3& first = scene.vertices()[corners.front()];
+  Vec3 sum;
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    const Vec3 a = difference(scene.vertices()[corners[i - 1]], first),
+               b = difference(scene.vertices()[corners[i]], first);
+    sum = along(sum, cross(a, b), 1.0);
+  }
+  return unit(sum);
+}
+
 }  // namespace
 
 SightLines::SightLines(const Scene& scene) : scene_(scene) {
@@ -32,7 +45,7 @@ SightLines::SightLines(const Scene& scene) : scene_(scene) {
   const Vec3 first = scene.vertices()[scene.corners(scene.pieces().front()).front()];
   Box box{first, first};
   for (const Piece& piece : scene.pieces()) {
-    normals_.push_back(unit(scene.face(piece.face).newell));
+    normals_.push_back(normal_of(scene, piece));
     for (const std::uint32_t corner : scene.corners(piece)) box.include(scene.vertices()[corner]);
   }
   const auto& [low, high] = box;

@@ -101,6 +101,7 @@ IsWanted in_plane(const Scene& scene, std::string_view selector) {
   const kernel::RationalVec3 normal = kernel::to_rational(Vec3{numbers.list[0], numbers.list[1], numbers.list[2]});
   if (is_zero(normal)) refuse_selector(selector, "0,0,0 is no normal of a plane");
   const kernel::Rational at = kernel::to_rational(numbers.list[3]);
+  if (numbers.last.value_or(0.0) < 0.0) refuse_selector(selector, "a distance is not negative");
   const kernel::Rational reach = kernel::to_rational(numbers.last.value_or(0.0));
   return for_all_corners(scene,
                          [normal, at, most = kernel::Rational(reach * reach * dot(normal, normal))](const Vec3& x) {
@@ -173,6 +174,14 @@ std::vector<FaceId> found_by(const Scene& scene, const std::string& selector) {
                "a name stands for at least one", "`exactff info` lists patches with their centres and extents");
 }
 
+// Words that stand for other things where patches are named.
+void require_free_name(const std::string& name) {
+  static constexpr std::array kTaken{"", "all", "auto", "sky", "(back)", "(open)", "(buried)"};
+  if (std::ranges::find(kTaken, name) == kTaken.end()) return;
+  text::refuse("patches cannot be called " + text::in_quotes(name), "the word stands for something else in other flags",
+               "give another name");
+}
+
 }  // namespace
 
 FaceName face_name(std::string_view text) {
@@ -197,6 +206,7 @@ Scene with_names(const Scene& scene, std::span<const FaceName> names) {
   std::vector<std::size_t> patch_of_face;
   for (const Face& face : scene.faces()) patch_of_face.push_back(index_of(face.patch));
   for (const FaceName& one : names) {
+    require_free_name(one.name);
     const std::size_t patch = patch_named(one.name);
     for (const FaceId face : found_by(scene, one.selector)) patch_of_face[index_of(face)] = patch;
   }

@@ -544,6 +544,10 @@ WeldedScene built(const Scene& scene, Welding& welding, double length) {
     builder.add_face(face.patch, face.material, std::move(rings), face.line);
     if (face.is_twin) builder.mark_as_twin();
   }
+  if (now.empty()) {
+    text::refuse("welded within " + text::shortest(length) + ", nothing is left of the scene",
+                 "all of its faces are no larger than that", "give a smaller length; `exactff info` advises one");
+  }
   WeldedScene result{builder.build().with_flipped(flipped).with_transparent(transparent),
                      welding.before().size(),
                      welding.live().size(),
@@ -576,7 +580,7 @@ namespace {
 constexpr std::size_t kNotPossible = std::numeric_limits<std::size_t>::max();
 
 // The open edges that welding leaves. Not possible where chains are too long, or where a face vanishes that is no
-// sliver.
+// sliver, or is the last of its patch.
 std::size_t open_edges_after(const Scene& scene, double length) {
   constexpr double kSliver = 16.0;
   Welding welding(scene, length);
@@ -586,9 +590,14 @@ std::size_t open_edges_after(const Scene& scene, double length) {
     return kNotPossible;
   }
   if (length > 0.0 && welding.largest_move() > kMostMove * length) return kNotPossible;
+  std::vector<bool> stays(scene.patches().size());
+  for (std::size_t f = 0; f < scene.faces().size(); ++f) {
+    if (!welding.rings(f).empty()) stays[index_of(scene.faces()[f].patch)] = true;
+  }
   for (std::size_t f = 0; f < scene.faces().size(); ++f) {
     const Face& face = scene.faces()[f];
     if (face.piece_count == 0 || !welding.rings(f).empty()) continue;
+    if (!stays[index_of(face.patch)]) return kNotPossible;
     const auto far = [&](Id v) {
       return kernel::distance(scene.vertices()[v], scene.vertices()[face.rings[0][0]]) > kSliver * length;
     };

@@ -152,6 +152,10 @@ TEST(FaceNames, RefuseWhatCannotBeRead) {
   EXPECT_TRUE(holds(words("a=normal:0,0,1:200"), "from 0 to 180"));
   EXPECT_TRUE(holds(words("a=plane:0,0,0,1"), "no normal"));
   EXPECT_TRUE(holds(words("a=things:3-99"), "no range of the patch's faces 1 to 12"));
+  EXPECT_TRUE(holds(words("a=plane:0,0,1,1:-1"), "a distance is not negative"));
+  for (const char* word : {"sky", "all", "(open)"}) {
+    EXPECT_TRUE(holds(words(std::string(word) + "=things:1"), "stands for something else"));
+  }
   EXPECT_TRUE(holds(words("a=nothing"), "there is no patch named"));
   EXPECT_TRUE(holds(words("a=box:8,8,8,9,9,9"), "finds no face"));
 }
