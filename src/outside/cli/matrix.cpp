@@ -340,12 +340,20 @@ std::unique_ptr<MatrixJob> job_of(const MatrixArguments& args, const jobs::Team*
   return job;
 }
 
+// Where edges are open, corners may only almost meet.
+std::string words_on_time(const MatrixJob& job) {
+  constexpr std::size_t kMostFaces = 10'000;  // of more, to look for open edges takes time
+  const std::string words = words_on_speed(job.request);
+  if (words.empty() || job.scene.faces().size() > kMostFaces || job.scene.open_edge_count() == 0) return words;
+  return words + "; `exactff convert --weld`, if corners only almost meet (`exactff info` tells)";
+}
+
 matrix::Matrix compute(const MatrixArguments& args, MatrixJob& job) {
   if (!args.matrix.empty()) {
     return matrix_in_file(args.matrix, job.scene, job.request.from, job.request.to, job.request.options.factors);
   }
   const InterruptWatch watch("exactff: interrupted; nothing was written\n");
-  LateNote note(words_on_speed(job.request));
+  LateNote note(words_on_time(job));
   ProgressBar bar;
   const Hooks hooks = with_note(note, Hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted});
   const matrix::Request& request = job.request;
@@ -436,7 +444,7 @@ int write(const MatrixArguments& args, jobs::Team* team) {
   const bool done = narrator.is_done(args.csv, [&] {
     job = job_of(args, team);
     const InterruptWatch watch(words_of_interruption("pair", args.csv));
-    LateNote note(words_on_speed(job->request));
+    LateNote note(words_on_time(*job));
     summary = matrix::write(job->request, args.csv, args.existing(), with_note(note, narrator.hooks(kNeverSlow)), team);
   });
   if (!done) return exit_code_of_interruption();
