@@ -119,6 +119,12 @@ Temperatures temperatures(const Scene& scene, const matrix::Matrix& given, const
                  "heat is exchanged between all of them", "compute it by exactff matrix --backs --to all,sky");
   }
   require_materials(scene, result.patches, conditions);
+  const auto leads_out = [](const ViewFactor& f) { return f.upper > 0.0; };
+  if (std::ranges::none_of(conditions.patches, [](const Known& known) { return known.temperature.has_value(); }) &&
+      std::ranges::none_of(given.back, leads_out) && std::ranges::none_of(given.open, leads_out)) {
+    text::refuse("no patch has a temperature, and nothing is open", "heats alone fit any temperature or none",
+                 "give the T of at least one patch");
+  }
   const Exposed exposed(given);
   const matrix::Matrix& matrix = exposed.matrix();
   System system = system_of(scene, matrix.factors, 0);
