@@ -122,7 +122,7 @@ Temperatures temperatures(const Scene& scene, const matrix::Matrix& given, const
   const auto leads_out = [](const ViewFactor& f) { return f.upper > 0.0; };
   if (std::ranges::none_of(conditions.patches, [](const Known& known) { return known.temperature.has_value(); }) &&
       std::ranges::none_of(given.back, leads_out) && std::ranges::none_of(given.open, leads_out)) {
-    text::refuse("no patch has a temperature, and nothing is open", "heats alone fit any temperature or none",
+    text::refuse("no patch has a temperature, and nothing is open", "heats alone give temperatures no bound",
                  "give the T of at least one patch");
   }
   const Exposed exposed(given);
