@@ -307,7 +307,7 @@ void check_content(const MatrixArguments& args, const Scene& scene, const std::v
     text::refuse("exchange factors are asked for, and not all patches are rows and columns, in their order",
                  "light bounces between all of them", "leave out --from and --to");
   }
-  if (args.exchanges()) radiosity::require_exchangeable(scene);
+  if (!args.exchange.empty()) radiosity::require_exchangeable(scene);
   for (const auto& [format, file] : args.program_files()) {
     if (format->of_conductors) radiosity::require_exchangeable(scene, format);
   }
@@ -353,7 +353,7 @@ matrix::Matrix compute(const MatrixArguments& args, MatrixJob& job) {
     return matrix_in_file(args.matrix, job.scene, job.request.from, job.request.to, job.request.options.factors);
   }
   const InterruptWatch watch("exactff: interrupted; nothing was written\n");
-  LateNote note(words_on_time(job));
+  LateNote note([&] { return words_on_time(job); });
   ProgressBar bar;
   const Hooks hooks = with_note(note, Hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted});
   const matrix::Request& request = job.request;
@@ -444,7 +444,7 @@ int write(const MatrixArguments& args, jobs::Team* team) {
   const bool done = narrator.is_done(args.csv, [&] {
     job = job_of(args, team);
     const InterruptWatch watch(words_of_interruption("pair", args.csv));
-    LateNote note(words_on_time(*job));
+    LateNote note([&] { return words_on_time(*job); });
     summary = matrix::write(job->request, args.csv, args.existing(), with_note(note, narrator.hooks(kNeverSlow)), team);
   });
   if (!done) return exit_code_of_interruption();

@@ -181,7 +181,7 @@ void LateNote::follow(const Progress& progress) {
   told_ = true;
   const std::string what = progress.slow.empty() ? "" : "It is slow " + text::printable(progress.slow) + ". ";
   const std::string clear_line = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
-  std::cerr << clear_line + "note: this takes more than " + text::short_number(kLate) + " s. " + what + text_ + '\n';
+  std::cerr << clear_line + "note: this takes more than " + text::short_number(kLate) + " s. " + what + text_() + '\n';
 }
 
 std::string words_on_speed(const matrix::Request& request) {

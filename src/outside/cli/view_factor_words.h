@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -51,14 +52,15 @@ inline constexpr const char* kTwoSidedHelp =
 // pair that takes long.
 class LateNote {
  public:
-  explicit LateNote(std::string text) : text_(std::move(text)) {}
+  // `text` is asked for when it is told, if ever.
+  explicit LateNote(std::function<std::string()> text) : text_(std::move(text)) {}
 
   void follow(const Progress& progress);  // several times a second
 
  private:
   static constexpr double kLate = 5.0, kNameable = 6.0;  // seconds; after the second, any pair that is slow has a name
 
-  const std::string text_;
+  const std::function<std::string()> text_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::optional<std::size_t> done_before_;  // by a run that is continued
   bool told_ = false;

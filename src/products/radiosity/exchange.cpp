@@ -170,14 +170,6 @@ Exchange::Channel channel_of(const Scene& scene, const matrix::Matrix& matrix, c
   return channel;
 }
 
-void require_emissivities(const Scene& scene, std::span<const Selection> patches, const System& system) {
-  for (std::size_t i = 0; i < system.reflectances.size(); ++i) {
-    if (system.reflectances[i] <= 1.0) continue;
-    text::refuse("the Kd of " + text::in_quotes(scene.name_of(patches[i])) + " is above 1",
-                 "its emissivity 1 - Kd would be negative", "give its material a Kd of at most 1");
-  }
-}
-
 void refuse_as_network(const matrix::ProgramFormat& format, const std::string& what, const std::string& remedy) {
   text::refuse(what, "a network of " + std::string(format.program) + " has one conductor for a pair of nodes", remedy);
 }
@@ -192,10 +184,14 @@ void require_exchangeable(const Scene& scene, const matrix::ProgramFormat* forma
   matrix::Factors none{patches_of(scene), {}, {}};
   std::optional<Numbers> first;
   for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
-    const System system = system_of(scene, none, c);
-    require_emissivities(scene, none.from, system);
-    if (!first) first = system.reflectances;
-    if (format != nullptr && *first != system.reflectances) refuse_colours(*format);
+    const Numbers reflectances = system_of(scene, none, c).reflectances;
+    for (std::size_t i = 0; i < reflectances.size(); ++i) {
+      if (reflectances[i] <= 1.0) continue;
+      text::refuse("the Kd of " + text::in_quotes(scene.name_of(none.from[i])) + " is above 1",
+                   "its emissivity 1 - Kd would be negative", "give its material a Kd of at most 1");
+    }
+    if (!first) first = reflectances;
+    if (format != nullptr && *first != reflectances) refuse_colours(*format);
   }
 }
 
@@ -207,6 +203,7 @@ Exchange exchange(const Scene& scene, const matrix::Matrix& given, int threads, 
     text::refuse("the matrix is not of all patches, in their order", "light bounces between all of them",
                  "leave out --from and --to");
   }
+  require_exchangeable(scene);
   const Exposed exposed(given);
   const matrix::Matrix& matrix = exposed.matrix();
   for (std::size_t i = 0; i < result.patches.size(); ++i) result.areas.push_back(matrix.factors.at(i, 0).area_from);
@@ -216,7 +213,6 @@ Exchange exchange(const Scene& scene, const matrix::Matrix& given, int threads, 
   std::vector<Numbers> reflectances;
   for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
     System system = system_of(scene, matrix.factors, c);
-    require_emissivities(scene, result.patches, system);
     reflectances.push_back(system.reflectances);
     const auto before = std::ranges::find(reflectances, system.reflectances);
     const auto same = static_cast<std::size_t>(before - reflectances.begin());

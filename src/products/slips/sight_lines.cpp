@@ -8,6 +8,7 @@
 #include "kernel/numbers.h"
 #include "kernel/poll.h"
 #include "kernel/vec.h"
+#include "receivers/own_pieces.h"
 #include "scene/scene.h"
 #include "slips/flip_trial.h"
 #include "text/phrases.h"
@@ -25,28 +26,15 @@ namespace {
 
 constexpr double kSamePlace = 1e-9;  // of the scene's diameter
 
-// Of the piece's own plane: those of a face that is bent lie off the face's.
-Vec3 normal_of(const Scene& scene, const Piece& piece) {
-  const auto corners = scene.corners(piece);
-  const Vec3& first = scene.vertices()[corners.front()];
-  Vec3 sum;
-  for (std::size_t i = 2; i < corners.size(); ++i) {
-    const Vec3 a = difference(scene.vertices()[corners[i - 1]], first),
-               b = difference(scene.vertices()[corners[i]], first);
-    sum = along(sum, cross(a, b), 1.0);
-  }
-  return unit(sum);
-}
-
 }  // namespace
 
 SightLines::SightLines(const Scene& scene) : scene_(scene) {
   if (scene.pieces().empty()) return;
   const Vec3 first = scene.vertices()[scene.corners(scene.pieces().front()).front()];
   Box box{first, first};
-  for (const Piece& piece : scene.pieces()) {
-    normals_.push_back(normal_of(scene, piece));
-    for (const std::uint32_t corner : scene.corners(piece)) box.include(scene.vertices()[corner]);
+  for (std::uint32_t piece = 0; piece < scene.pieces().size(); ++piece) {
+    normals_.push_back(unit(front_of_piece(scene, piece)));
+    for (const std::uint32_t corner : scene.corners(scene.pieces()[piece])) box.include(scene.vertices()[corner]);
   }
   const auto& [low, high] = box;
   diameter_ = kernel::distance(high, low);

@@ -14,6 +14,7 @@
 #include <numeric>
 
 #include "kernel/filter.h"
+#include "scene/groups.h"
 #include "scene/scene.h"
 #include "scene/solids.h"
 
@@ -34,10 +35,8 @@ class Finder {
       : scene_(scene),
         places_(places(scene)),
         edges_are_cut_(edges == ClosedSurfaces::Edges::kCutAtJunctions),
-        parent_(scene.pieces().size()),
-        open_(scene.pieces().size(), 0) {
-    std::iota(parent_.begin(), parent_.end(), 0U);
-  }
+        surface_of_(scene.pieces().size()),
+        open_(scene.pieces().size(), 0) {}
 
   bool find() {
     leave_out_pieces();
@@ -52,10 +51,7 @@ class Finder {
     return true;
   }
 
-  [[nodiscard]] std::uint32_t root(std::uint32_t piece) {
-    while (parent_[piece] != piece) piece = parent_[piece] = parent_[parent_[piece]];
-    return piece;
-  }
+  [[nodiscard]] std::uint32_t root(std::uint32_t piece) { return surface_of_.root(piece); }
   [[nodiscard]] bool is_closed(std::uint32_t root) const { return open_[root] == 0; }
   [[nodiscard]] std::optional<ClosedSurface::Rim> rim_of(std::uint32_t root) const {
     const auto rim = rims_.find(root);
@@ -85,8 +81,8 @@ class Finder {
   const Scene& scene_;
   const std::span<const std::uint32_t> places_;
   const bool edges_are_cut_;
-  std::vector<std::uint32_t> parent_;  // by piece
-  std::vector<std::uint8_t> open_;     // by piece
+  Groups surface_of_;               // by piece
+  std::vector<std::uint8_t> open_;  // by piece
   std::vector<DirectedEdge> edges_;
   std::vector<std::uint32_t> begin_;                  // into edges_, by lower place, one more at the end
   std::vector<EdgeOfPiece> uncancelled_;              // edges that are to be cut
@@ -141,7 +137,7 @@ void Finder::join(std::uint32_t low, std::span<const DirectedEdge> edge) {
   int balance = 0;
   for (const DirectedEdge& e : edge) {
     balance += e.upwards ? 1 : -1;
-    parent_[root(e.piece)] = root(edge.front().piece);
+    surface_of_.join(e.piece, edge.front().piece);
   }
   if (balance == 0) return;
   if (!edges_are_cut_) {
@@ -154,7 +150,7 @@ void Finder::join(std::uint32_t low, std::span<const DirectedEdge> edge) {
 void Finder::join_at_junctions() {
   cut_at_junctions(uncancelled_, scene_.vertices());
   exactff::for_each_edge(uncancelled_, [&](auto first, auto last) {
-    for (auto use = first; use != last; ++use) parent_[root(use->piece)] = root(first->piece);
+    for (auto use = first; use != last; ++use) surface_of_.join(use->piece, first->piece);
     const std::ptrdiff_t balance = balance_of(first, last);
     for (std::ptrdiff_t i = 0; i < std::abs(balance); ++i) {
       of_holes_.push_back({first->low, first->high, first->piece, balance > 0});

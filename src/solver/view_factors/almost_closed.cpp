@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include "kernel/poll.h"
 #include "kernel/vec.h"
+#include "scene/groups.h"
 #include "view_factors/cell.h"
 
 namespace exactff::view_factors {
@@ -25,17 +26,13 @@ constexpr Vec3 kAlong{0.5698, 0.6178, 0.5421};                          // short
 class FinderOfAlmostClosed {
  public:
   FinderOfAlmostClosed(const ExactScene& scene, double length)
-      : scene_(scene), length_(length), end_of_(scene.vertices.size()), parent_(scene.pieces.size()) {
-    std::iota(end_of_.begin(), end_of_.end(), 0U);
-    std::iota(parent_.begin(), parent_.end(), 0U);
+      : scene_(scene), length_(length), end_of_(scene.vertices.size()), surface_of_(scene.pieces.size()) {
     join_corners();
     add_sides();
     cancel();
   }
 
-  // By pieces' numbers: of which surface each is, closed or not.
-  [[nodiscard]] std::uint32_t root(std::uint32_t piece) { return root_in(parent_, piece); }
-  [[nodiscard]] bool is_closed(std::uint32_t piece) { return !open_[root(piece)]; }
+  [[nodiscard]] bool is_closed(std::uint32_t piece) { return !open_[surface_of_.root(piece)]; }
   [[nodiscard]] std::vector<AlmostClosedSurface> surfaces();
 
  private:
@@ -49,10 +46,6 @@ class FinderOfAlmostClosed {
     std::vector<std::uint32_t> between{};  // ends of others, from `from` on
   };
 
-  [[nodiscard]] static std::uint32_t root_in(std::vector<std::uint32_t>& parent, std::uint32_t of) {
-    while (parent[of] != of) of = parent[of] = parent[parent[of]];
-    return of;
-  }
   [[nodiscard]] const Vec3& at(std::uint32_t corner) const { return scene_.vertices[corner].at; }
   [[nodiscard]] static double key(const Vec3& p) { return dot(kAlong, p); }
 
@@ -71,7 +64,7 @@ class FinderOfAlmostClosed {
   const ExactScene& scene_;
   const double length_;
   std::vector<std::uint32_t> end_of_;  // by corner
-  std::vector<std::uint32_t> parent_;  // by piece
+  Groups surface_of_;                  // by piece
   std::vector<bool> open_;             // by piece that is a root
   std::vector<SideOfPiece> sides_;
 };
@@ -86,15 +79,15 @@ void FinderOfAlmostClosed::join_corners() {
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   const auto place = [&](std::uint32_t corner) { return std::tuple(at(corner).x, at(corner).y, at(corner).z); };
   std::ranges::sort(corners, {}, [&](std::uint32_t corner) { return std::pair(key(at(corner)), place(corner)); });
+  Groups near(scene_.vertices.size());
   for (std::size_t i = 0; i < corners.size(); ++i) {
     for (std::size_t k = i + 1; k < corners.size() && key(at(corners[k])) - key(at(corners[i])) <= length_; ++k) {
-      if (distance(at(corners[i]), at(corners[k])) > length_) continue;
-      std::uint32_t one = root_in(end_of_, corners[i]), other = root_in(end_of_, corners[k]);
-      if (place(other) < place(one)) std::swap(one, other);
-      end_of_[other] = one;
+      if (distance(at(corners[i]), at(corners[k])) <= length_) near.join(corners[i], corners[k]);
     }
   }
-  for (const std::uint32_t corner : corners) end_of_[corner] = root_in(end_of_, corner);
+  std::ranges::sort(corners, std::ranges::greater(), place);
+  for (const std::uint32_t corner : corners) end_of_[near.root(corner)] = corner;
+  for (const std::uint32_t corner : corners) end_of_[corner] = end_of_[near.root(corner)];
 }
 
 void FinderOfAlmostClosed::add_sides() {
@@ -114,7 +107,7 @@ void FinderOfAlmostClosed::for_each_group(std::vector<Way>& ways, const Left& le
     std::ptrdiff_t balance = 0;
     for (; last != ways.end() && last->low == first->low && last->high == first->high; ++last) {
       balance += last->upwards ? 1 : -1;
-      parent_[root(sides_[last->side].piece)] = root(sides_[first->side].piece);
+      surface_of_.join(sides_[last->side].piece, sides_[first->side].piece);
     }
     if (balance != 0) left(first, last);
     first = last;
@@ -139,7 +132,7 @@ void FinderOfAlmostClosed::cancel() {
   for (std::uint32_t p = 0; p < scene_.pieces.size(); ++p) {
     if (scene_.pieces[p].transparent) open_[p] = true;
   }
-  for (const std::uint32_t piece : of_open) open_[root(piece)] = true;
+  for (const std::uint32_t piece : of_open) open_[surface_of_.root(piece)] = true;
 }
 
 // Where ends of the others are near.
@@ -191,13 +184,13 @@ std::vector<AlmostClosedSurface> FinderOfAlmostClosed::surfaces() {
   std::map<std::uint32_t, AlmostClosedSurface> found;  // by root
   for (std::uint32_t p = 0; p < scene_.pieces.size(); ++p) {
     if (!is_closed(p)) continue;
-    ExactSurface& surface = found[root(p)].surface;
+    ExactSurface& surface = found[surface_of_.root(p)].surface;
     surface.pieces.push_back(p);
     surface.box.include(scene_.pieces[p].box.low);
     surface.box.include(scene_.pieces[p].box.high);
   }
   for (const SideOfPiece& side : sides_) {
-    if (is_closed(side.piece)) add_strip(side, found[root(side.piece)]);
+    if (is_closed(side.piece)) add_strip(side, found[surface_of_.root(side.piece)]);
   }
   std::vector<AlmostClosedSurface> result;
   for (auto& [root, surface] : found) result.push_back(std::move(surface));

@@ -281,10 +281,6 @@ Ring Points::ring(const std::vector<PointId>& corners) {
   return result;
 }
 
-Plane Points::plane_of(const Ring& ring) const {
-  return make_plane(join((*this)[ring[0].from], (*this)[ring[1].from], (*this)[ring[2].from]), units_);
-}
-
 std::vector<Vec3> Points::positions(const Ring& ring) const {
   std::vector<Vec3> result;
   for (const Edge& edge : ring) result.push_back((*this)[edge.from].at);

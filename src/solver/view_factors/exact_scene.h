@@ -223,7 +223,6 @@ class Points {
   Ring clip(const Ring& ring, const Plane& plane, std::uint32_t name);
   // From where the line of the one edge crosses the plane to where that of the other does.
   Edge between_crossings(const Edge& one, const Edge& other, const Plane& plane, std::uint32_t name);
-  [[nodiscard]] Plane plane_of(const Ring& ring) const;
   [[nodiscard]] std::vector<Vec3> positions(const Ring& ring) const;  // rounded
   // Frees what only further rings need.
   void complete();

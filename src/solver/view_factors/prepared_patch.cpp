@@ -98,7 +98,7 @@ struct Clippable {
 // The planes through the sides of a convex polygon, perpendicular to it; positive outside.
 std::vector<Plane> sides_of(const Part& part, const Units& units) {
   const Clippable clippable(part, units);
-  const Plane plane = clippable.points.plane_of(clippable.ring);
+  const Plane plane = plane_of(part, units);
   std::vector<Plane> sides;
   for (const auto& side : cell_of(clippable.points, clippable.ring, plane).sides) sides.push_back(*side);
   return sides;
@@ -169,7 +169,7 @@ bool is_on_both_sides(const Part& part, const Plane& plane) {
 
 // Those that may cut the part, the longest first.
 std::vector<Contact> contacts(const ExactScene& scene, const Part& part) {
-  const Plane plane = plane_of(part, scene.units);
+  const Plane& plane = plane_of(scene, part);
   const Box box = box_of(part.corners);
   std::vector<Contact> result;
   for (std::uint32_t index = 0; index < scene.pieces.size(); ++index) {

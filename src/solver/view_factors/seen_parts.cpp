@@ -138,7 +138,7 @@ class Interior {
   Interior(const ExactScene& scene, const Part& part)
       : scene_(scene),
         part_(part),
-        plane_(plane_of(part, scene.units)),
+        plane_(plane_of(scene, part)),
         box_(box_of(part.corners)),
         centre_(inner_point(part, scene.units)) {
     for (std::size_t i = 0; i < part.corners.size(); ++i) {
@@ -196,7 +196,7 @@ class Interior {
 
   const ExactScene& scene_;
   const Part& part_;
-  Plane plane_;
+  const Plane& plane_;
   Box box_;
   Point centre_;              // inside
   std::vector<Plane> edges_;  // through the edges, along the normal; positive inside
@@ -246,10 +246,9 @@ std::optional<std::pair<Part, double>> inner_part(const Part& part, double space
     const Vec3 &a = part.corners[i].at, &b = part.corners[(i + 1) % part.corners.size()].at;
     nearest = std::min(nearest, distance_to_segment(centre.at, a, b));
   }
-  const double share = space / nearest;
+  const double steps = std::ceil(std::ldexp(space / nearest, kBits)), share = std::ldexp(steps, -kBits);
   if (!(share < kMost)) return std::nullopt;
-  const Integer whole = Integer(1) << kBits;
-  const Integer towards(std::ceil(std::ldexp(share, kBits)));
+  const Integer whole = Integer(1) << kBits, towards(steps);
   Part inner = part;
   for (Point& corner : inner.corners) {
     Homogeneous at;

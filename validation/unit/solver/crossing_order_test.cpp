@@ -59,7 +59,7 @@ TEST(CrossingOrder, IsThatOfEveryCornerWhereLinesAlmostMeet) {
     std::vector<PointId> ids;
     for (const Vec3& v : all) ids.push_back(points.add(point_of(v, units)));
     const Ring ring = points.ring({ids[6], ids[7], ids[8]});
-    const Cell cell = cell_of(points, ring, points.plane_of(ring));
+    const Cell cell = cell_of(points, ring, make_plane(join(points[ids[6]], points[ids[7]], points[ids[8]]), units));
     std::array<LineId, 3> lines{};
     for (std::size_t i = 0; i < 3; ++i) lines[i] = points.ring({ids[2 * i], ids[2 * i + 1], ids[6]}).front().line;
     const int order = crossing_order(points, cell, lines[0], lines[1], lines[2]);

@@ -157,7 +157,7 @@ TEST(HiddenBound, IsAtLeastWhatIsHidden) {
       directions.push_back(Side::of(plane).normal);
     }
     const auto open = hiding.factors(0, 0, s), first = hiding.factors(0, 1, s), both = hiding.factors(0, 2, s);
-    const HiddenBound bound(*sight, sight->points.plane_of(sight->source), directions, sight->occluders[0]);
+    const HiddenBound bound(*sight, sight->source_plane, directions, sight->occluders[0]);
     const double most = bound.on(corners, 1.0, size) / size;
     const auto [by_first, error] = mean_of_difference(open, first);
     EXPECT_LE(by_first - error, most);
