@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "exactff/batch.h"
+#include "exactff/methods.h"
 #include "exactff/slips.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"

@@ -21,8 +21,8 @@
 #include <utility>
 #include <vector>
 
-#include "exactff/batch.h"
 #include "exactff/exact.h"
+#include "exactff/methods.h"
 #include "exactff/progress.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"

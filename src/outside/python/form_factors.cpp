@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "exactff/batch.h"
 #include "exactff/methods.h"
 #include "exactff/receiver.h"
 #include "flags/scene.h"

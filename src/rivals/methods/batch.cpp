@@ -1,8 +1,7 @@
-#include "exactff/batch.h"
-
 #include <memory>
 #include <vector>
 
+#include "exactff/methods.h"
 #include "files/parallel.h"
 #include "text/refuse.h"
 #include "whole_view/light.h"

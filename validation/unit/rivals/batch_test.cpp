@@ -1,6 +1,4 @@
 // Many receivers over threads: the values of single calls, whatever the threads; progress, cancellation, exceptions.
-#include "exactff/batch.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -8,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "exactff/methods.h"
 #include "exactff/models.h"
 
 namespace exactff {
