@@ -19,7 +19,6 @@
 #include <vector>
 
 #include "exactff/jobs.h"
-#include "exactff/progress.h"
 #include "exactff/scene.h"
 #include "exactff/table.h"
 #include "exactff/view_factors.h"

@@ -52,7 +52,7 @@
 #include <vector>
 
 #include "exactff/exact.h"
-#include "exactff/progress.h"
+#include "exactff/jobs.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
 #include "exactff/settings.h"

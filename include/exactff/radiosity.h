@@ -22,8 +22,8 @@
 #include <string_view>
 #include <vector>
 
+#include "exactff/jobs.h"
 #include "exactff/matrix.h"
-#include "exactff/progress.h"
 #include "exactff/scene.h"
 #include "exactff/view_factors.h"
 

@@ -33,7 +33,6 @@
 #include "exactff/exact.h"
 #include "exactff/jobs.h"
 #include "exactff/methods.h"
-#include "exactff/progress.h"
 #include "exactff/radiosity.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"

@@ -25,7 +25,6 @@
 #include "exactff/exact.h"
 #include "exactff/jobs.h"
 #include "exactff/methods.h"
-#include "exactff/progress.h"
 #include "exactff/receiver.h"
 #include "exactff/render.h"
 #include "exactff/scene.h"

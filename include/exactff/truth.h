@@ -20,7 +20,6 @@
 #include "exactff/exact.h"
 #include "exactff/exr.h"
 #include "exactff/jobs.h"
-#include "exactff/progress.h"
 #include "exactff/radiosity.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"

@@ -13,7 +13,7 @@ storeys=(foundation scenes solver rivals products reports outside)
 
 # The room of a public header that is not named after it. Where a header serves several rooms of a storey, the lowest.
 declare -A home=(
-  [enclosure]=kernel [geometry]=kernel [progress]=kernel [error]=text [settings]=text [version]=text
+  [enclosure]=kernel [geometry]=kernel [jobs]=kernel [error]=text [settings]=text [version]=text
   [scene_files]=formats [receiver]=receivers [exact]=visibility [region]=exact [view]=whole_view [testing]=check
 )
 

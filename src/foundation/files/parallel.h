@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "exactff/progress.h"
+#include "exactff/jobs.h"
 
 namespace exactff::files {
 

@@ -1,10 +1,10 @@
-// Long loops ask the hooks of their thread whether to go on (exactff/progress.h).
+// Long loops ask the hooks of their thread whether to go on (exactff/jobs.h).
 #pragma once
 
 #include <cstddef>
 #include <string_view>
 
-#include "exactff/progress.h"
+#include "exactff/jobs.h"
 
 namespace exactff::kernel {
 

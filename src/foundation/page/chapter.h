@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "exactff/progress.h"
+#include "exactff/jobs.h"
 
 namespace exactff::page {
 

@@ -10,7 +10,6 @@
 #include <string>
 
 #include "exactff/jobs.h"
-#include "exactff/progress.h"
 #include "jobs/team.h"
 
 namespace exactff::cli {
@@ -87,7 +86,7 @@ void leave_if_interrupted();              // throws Cancelled
 // this function says so and returns the exit code of the signal.
 [[nodiscard]] int unless_interrupted(const std::function<int()>& command);
 
-// Calls `prepare`, shows the progress of what it makes (exactff/progress.h), and throws Cancelled after a signal.
+// Calls `prepare`, shows the progress of what it makes (exactff/jobs.h), and throws Cancelled after a signal.
 template <class Prepare>
 auto with_progress(const Prepare& prepare) {
   ProgressBar bar;

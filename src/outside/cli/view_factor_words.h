@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "exactff/jobs.h"
 #include "exactff/matrix.h"
-#include "exactff/progress.h"
 #include "flags/scene.h"
 
 namespace exactff::cli {

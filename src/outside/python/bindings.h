@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "exactff/exact.h"
+#include "exactff/jobs.h"
 #include "exactff/methods.h"
-#include "exactff/progress.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
 

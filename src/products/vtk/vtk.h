@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "exactff/geometry.h"
-#include "exactff/progress.h"
+#include "exactff/jobs.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
 #include "files/file.h"

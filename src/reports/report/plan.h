@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "exactff/error.h"
-#include "exactff/progress.h"
+#include "exactff/jobs.h"
 #include "exactff/study.h"
 #include "experiments/experiments.h"
 

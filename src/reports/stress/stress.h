@@ -15,7 +15,7 @@
 
 #include "exactff/enclosure.h"
 #include "exactff/exact.h"
-#include "exactff/progress.h"
+#include "exactff/jobs.h"
 #include "exactff/table.h"
 #include "page/chapter.h"
 

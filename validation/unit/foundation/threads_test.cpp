@@ -16,7 +16,7 @@
 
 #include "exactff/adaptive.h"
 #include "exactff/exact.h"
-#include "exactff/progress.h"
+#include "exactff/jobs.h"
 #include "files/parallel.h"
 #include "generate/families.h"
 #include "scene/closed_surfaces.h"

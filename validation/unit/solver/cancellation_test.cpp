@@ -10,9 +10,9 @@
 
 #include "exactff/adaptive.h"
 #include "exactff/exact.h"
+#include "exactff/jobs.h"
 #include "exactff/methods.h"
 #include "exactff/models.h"
-#include "exactff/progress.h"
 #include "exactff/receiver.h"
 #include "exactff/view.h"
 #include "files/parallel.h"
