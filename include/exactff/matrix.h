@@ -41,6 +41,13 @@ struct Factors {
   }
 };
 
+// The factors of each row to a group of columns together.
+struct GroupSum {
+  std::string name;                  // NAME of the column "(sum NAME)"
+  std::vector<std::size_t> columns;  // of the group, each once, in their order
+  std::vector<ViewFactor> factors;   // for each row
+};
+
 struct Matrix {
   Factors factors;
   // For each row: the factor to the backs of all faces that are not transparent, and the share that meets nothing.
@@ -50,6 +57,7 @@ struct Matrix {
   // For each row: the share of its area that is buried (scene.h), proved. Empty if nothing is, in all rows. Its area_to
   // means nothing.
   std::vector<ViewFactor> buried;
+  std::vector<GroupSum> sums = {};  // see add_sums()
 };
 
 // All factors between two lists of patches, each as view_factor gives it alone. Throws what view_factor throws; and
@@ -64,6 +72,14 @@ struct Sum {
   double upper = 0.0;
 };
 [[nodiscard]] std::vector<Sum> row_sums(const Matrix& matrix);
+
+// Adds, for each name, the sum of each row over the columns that Scene::select_all() finds by it. Bounds are sums of
+// bounds, rounded outward, and at most 1 where the columns cannot overlap (as clipped rows); the value is the sum of
+// the values, within them. The claim is the weakest one of the parts: zero only if all are. Accurate: the width is at
+// most `accuracy`, which parts that all are accurate need not give. If parts come from points, the sum misses with a
+// probability of at most 1e-6 for each of them. Throws InputError for a name that is unknown, given twice, or has a
+// part that is no column.
+void add_sums(const Scene& scene, std::span<const std::string> names, double accuracy, Matrix& matrix);
 
 // Why rows need not add up to 1: "what meets backs is not computed". Empty: every row adds up to 1.
 [[nodiscard]] std::vector<std::string> reasons_against_one(const Scene& scene, const Matrix& matrix);
@@ -141,10 +157,11 @@ struct Balanced {
 inline constexpr std::string_view kBack = "(back)";
 inline constexpr std::string_view kOpen = "(open)";
 inline constexpr std::string_view kBuried = "(buried)";
+[[nodiscard]] std::string name_of(const GroupSum& sum);  // "(sum NAME)"
 
 // A row for each entry: from,to,factor,lower,upper,claim,way,accurate,area_from,area_to,cells,event_cells,limit. The
 // head has the options of the view factors and all else that the entries depend on.
-// With a balanced matrix, each row also has the column `balanced`.
+// With a balanced matrix, each row also has the column `balanced`, and sums are left out.
 [[nodiscard]] table::Table table_of(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options,
                                     const Balanced* balanced = nullptr);
 
@@ -152,7 +169,7 @@ inline constexpr std::string_view kBuried = "(buried)";
 struct NamedMatrix {
   std::string file;
   table::Head head;
-  std::vector<std::string> from, to;           // `to` without the additional columns
+  std::vector<std::string> from, to;           // `to` without the additional columns; sums are not read
   std::vector<ViewFactor> entries;             // row by row
   std::vector<ViewFactor> back, open, buried;  // for each row; empty if the table does not have them
   std::vector<std::size_t> lines;  // of all entries, in the order of the table: row by row, with back and open
@@ -183,6 +200,7 @@ jobs::Summary write(const Request& request, const std::filesystem::path& file,
 // Writes the arrays of a sparse matrix (CSR) for NumPy and SciPy: scipy.sparse.load_npz(path) gives the factors.
 // `radius`, in the order of `data`: data - radius and data + radius are bounds. `claim` and `way` likewise. `from` and
 // `to` are names; `area_from`, `area_to`; if computed, `back`, `back_radius`, `open`, `open_radius` for each row.
+// Of sums: `sum_of`, the names, and row by row `sum` and `sum_radius`.
 // Proved zeros are left out. The file appears complete or not at all. Throws InputError if it cannot be written.
 // With a balanced matrix, `data`, `back`, `open` and `buried` have its values, and `factor` those of the matrix.
 void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::path& path,

@@ -184,6 +184,22 @@ def test_a_view_by_faces():
     assert all(":" in name or name in ROOM.names for name in seen) and len(seen) > len(exactff.view(ROOM, POINT, UP))
 
 
+def test_sums_are_those_of_the_command(tmp_path):
+    scene = exactff.Scene.read(L_ROOM)
+    matrix = exactff.view_factor_matrix(scene, accuracy=1e-3, sums=["srf-[12]"])
+    for i, f in enumerate(matrix.sums["srf-[12]"]):
+        assert f.value == pytest.approx(matrix[matrix.from_names[i], "srf-1"].value
+                                        + matrix[matrix.from_names[i], "srf-2"].value, abs=1e-12)
+        assert f.lower <= f.value <= f.upper
+    matrix.save(tmp_path / "m.csv")
+    program("matrix", L_ROOM, "--accuracy", "1e-3", "--sum", "srf-[12]", "-o", tmp_path / "program.csv")
+    assert (tmp_path / "m.csv").read_bytes() == (tmp_path / "program.csv").read_bytes()
+    with pytest.raises(exactff.InputError, match="sums"):
+        matrix.balanced()
+    with pytest.raises(exactff.InputError, match="is no column"):
+        exactff.view_factor_matrix(scene, to_patches=["srf-1"], sums=["srf-2"])
+
+
 def test_a_balanced_matrix_closes_to_the_bit(tmp_path):
     scene = exactff.Scene.read(L_ROOM)
     matrix = exactff.view_factor_matrix(scene, accuracy=1e-3, backs=True, sky=True)

@@ -53,6 +53,10 @@ constexpr const char* kMatrixFooter =
     "every row adds up to 1 within 2^-51 (the output says how far). If there is none, a warning names the rows or\n"
     "pairs that prove it, and the exit code is 1. -o then has the column 'balanced', and the table and all other\n"
     "files have its values.\n"
+    "--sum NAME, after --divide or --patches, adds the column '(sum NAME)': the sum over all columns NAME:1, NAME/2,\n"
+    "... or over those of a pattern. Bounds are the sums of theirs, rounded outward; the claim is the weakest of\n"
+    "theirs. It is accurate if it is no wider than the accuracy, and no warning counts it. It is in -o and --npz, and\n"
+    "not in files of other programs. Finished pairs are not kept; compute FILE first, then give --matrix FILE --sum.\n"
     "--matrix FILE takes the entries from a file of `exactff matrix SCENE -o FILE`, with all columns that are needed.\n"
     "--exchange FILE holds Gebhart's factors: of what a patch emits, the share that another one absorbs after all\n"
     "bounces, with the emissivity 1 - Kd; backs and the sky are black. Bounds follow from those of the view factors,\n"
@@ -68,7 +72,7 @@ std::string flag_of(const matrix::ProgramFormat& format) { return "--" + std::st
 
 struct MatrixArguments {
   flags::SceneArguments scene;
-  std::vector<std::string> from{"all"}, to{"all"}, two_sided;
+  std::vector<std::string> from{"all"}, to{"all"}, two_sided, sums;
   matrix::Options options;
   bool plain = false, balance = false;
   std::string matrix;  // a file
@@ -97,7 +101,7 @@ struct MatrixArguments {
   // A pipe or a device has no journal.
   [[nodiscard]] bool keeps_work() const {
     std::error_code ignored;
-    return !csv.empty() && !balance && matrix.empty() &&
+    return !csv.empty() && !balance && matrix.empty() && sums.empty() &&
            (!std::filesystem::is_other(csv, ignored) || resume || !shard.empty());
   }
 };
@@ -110,6 +114,7 @@ void for_each_entry(const Scene& scene, const matrix::Matrix& matrix, const Visi
     if (!matrix.back.empty()) visit(i, std::string(matrix::kBack), matrix.back[i]);
     if (!matrix.open.empty()) visit(i, std::string(matrix::kOpen), matrix.open[i]);
     if (!matrix.buried.empty()) visit(i, std::string(matrix::kBuried), matrix.buried[i]);
+    for (const matrix::GroupSum& sum : matrix.sums) visit(i, text::printable(name_of(sum)), sum.factors[i]);
   }
 }
 
@@ -137,6 +142,7 @@ void print_table(const Scene& scene, const matrix::Matrix& matrix) {
   if (!matrix.back.empty()) table.add_column(std::string(matrix::kBack));
   if (!matrix.open.empty()) table.add_column(std::string(matrix::kOpen));
   if (!matrix.buried.empty()) table.add_column(std::string(matrix::kBuried));
+  for (const matrix::GroupSum& sum : matrix.sums) table.add_column(text::printable(name_of(sum)));
   table.add_column("sum of row");
   for (std::size_t i = 0; i < rows; ++i) {
     std::vector<std::string> cells{shown_name(scene, all.from[i])};
@@ -144,6 +150,7 @@ void print_table(const Scene& scene, const matrix::Matrix& matrix) {
     if (!matrix.back.empty()) cells.push_back(factor_text(matrix.back[i]));
     if (!matrix.open.empty()) cells.push_back(factor_text(matrix.open[i]));
     if (!matrix.buried.empty()) cells.push_back(factor_text(matrix.buried[i]));
+    for (const matrix::GroupSum& sum : matrix.sums) cells.push_back(factor_text(sum.factors[i]));
     cells.push_back(text::interval(sums[i].lower, sums[i].upper));
     table.add_row(std::move(cells));
   }
@@ -213,12 +220,16 @@ void check_shard_and_resume(const MatrixArguments& args) {
     text::refuse(std::string(args.resume ? "--resume" : "--shard") + " is given without -o",
                  "finished pairs are kept beside the file of -o", "name a file, for example -o factors.csv");
   }
-  if ((args.balance || !args.matrix.empty()) && (args.resume || !args.shard.empty())) {
+  if ((args.balance || !args.matrix.empty() || !args.sums.empty()) && (args.resume || !args.shard.empty())) {
     text::refuse(std::string(args.resume ? "--resume" : "--shard") + " is given with " +
-                     (args.balance ? "--balance" : "--matrix"),
+                     (args.balance           ? "--balance"
+                      : !args.matrix.empty() ? "--matrix"
+                                             : "--sum"),
                  "finished pairs are kept of a matrix as it is computed",
-                 "compute it first by -o FILE, and then give --matrix FILE" +
-                     std::string(args.balance ? " --balance" : " without this flag"));
+                 "compute it first by -o FILE, and then give --matrix FILE" + std::string(args.balance ? " --balance"
+                                                                                          : !args.sums.empty()
+                                                                                              ? " --sum NAME"
+                                                                                              : " without this flag"));
   }
   if (args.shard.empty()) return;
   std::vector<std::pair<std::string, bool>> all{{"--plain", args.plain},
@@ -311,6 +322,7 @@ void check_content(const MatrixArguments& args, const Scene& scene, const std::v
   for (const auto& [format, file] : args.program_files()) {
     if (format->of_conductors) radiosity::require_exchangeable(scene, format);
   }
+  add_sums(scene, args.sums, args.options.factors.accuracy, empty);
   if (!args.balance) return;
   empty.back.resize(from.size());
   empty.open.resize(from.size());
@@ -408,6 +420,7 @@ int finish(const MatrixArguments& args, const MatrixJob& job, matrix::Matrix mat
   const matrix::Options& options = job.request.options;
   const std::vector<Problem> wide = problems_of_width(job.scene, matrix, options.factors);
   print_warnings(wide);
+  add_sums(job.scene, args.sums, options.factors.accuracy, matrix);
   std::optional<matrix::Balanced> balanced;
   if (args.balance) {
     balanced = matrix::balanced(job.scene, matrix);
@@ -547,10 +560,14 @@ Command add_matrix(CLI::App& app) {
       ->excludes(claims.claim)
       ->excludes(claims.certify)
       ->excludes(both);
-  command->add_flag(
-      "--balance", args->balance,
-      "Choose values within all intervals so that A_i F_ij = A_j F_ji and every row adds up to 1; computes "
-      "backs and the sky, too");
+  CLI::Option* sum =
+      command->add_option("--sum", args->sums, "Also the column (sum NAME): all columns of a divided patch or pattern")
+          ->type_name("NAME");
+  command
+      ->add_flag("--balance", args->balance,
+                 "Choose values within all intervals so that A_i F_ij = A_j F_ji and every row adds up to 1; computes "
+                 "backs and the sky, too")
+      ->excludes(sum);
   command->add_flag(
       "--plain", args->plain,
       "Print a line for each entry: FROM, TO, LOWER, UPPER, CLAIM, WAY, with tabs; by --balance also VALUE");

@@ -174,7 +174,8 @@ class MadeMatrix {
 // against 1, reciprocity, MadeMatrix.
 py::tuple view_factor_matrix_of(const std::shared_ptr<SharedScene>& scene, const std::vector<std::string>& from,
                                 const std::vector<std::string>& to, double accuracy, std::size_t budget, bool certify,
-                                bool backs, bool open, bool both_directions, int threads, const py::object& progress) {
+                                bool backs, bool open, bool both_directions, const std::vector<std::string>& groups,
+                                int threads, const py::object& progress) {
   const Scene& in = scene->scene();
   std::vector<Selection> rows, columns;
   for (const std::string& name : from) rows.push_back(in.select(name));
@@ -184,20 +185,25 @@ py::tuple view_factor_matrix_of(const std::shared_ptr<SharedScene>& scene, const
       .backs = backs,
       .open = open,
       .threads = threads};
+  matrix::Matrix empty{{rows, columns, std::vector<ViewFactor>(rows.size() * columns.size())}, {}, {}, {}};
+  add_sums(in, groups, accuracy, empty);  // refuses before anything that takes time
   Interrupt interrupt(progress);
   std::vector<std::string> reasons;
   matrix::Reciprocity reciprocity;
   matrix::Matrix made = interrupt.run([&] {
     matrix::Matrix computed = matrix::compute(in, rows, columns, options, interrupt.hooks());
+    add_sums(in, groups, accuracy, computed);
     reasons = reasons_against_one(in, computed);
     if (both_directions) reciprocity = matrix::reciprocity(computed);
     return computed;
   });
   py::list sums;
   for (const matrix::Sum& sum : row_sums(made)) sums.append(py::make_tuple(sum.lower, sum.upper));
+  py::list of_groups;
+  for (const matrix::GroupSum& sum : made.sums) of_groups.append(to_list(sum.factors));
   const py::tuple lists =
       py::make_tuple(to_list(made.factors.entries), to_list(made.back), to_list(made.open), to_list(made.buried));
-  return lists + py::make_tuple(sums, reasons, to_tuple(reciprocity),
+  return lists + py::make_tuple(sums, reasons, to_tuple(reciprocity), of_groups,
                                 std::make_shared<MadeMatrix>(scene, std::move(made), options.factors));
 }
 
@@ -253,7 +259,7 @@ void bind_view_factors(py::module_& module) {
              py::arg("accuracy"), py::arg("budget"), py::arg("certify"));
   module.def("view_factor_matrix", &view_factor_matrix_of, py::arg("scene"), py::arg("from_patches"),
              py::arg("to_patches"), py::arg("accuracy"), py::arg("budget"), py::arg("certify"), py::arg("backs"),
-             py::arg("open"), py::arg("both_directions"), py::arg("threads"), py::arg("progress"));
+             py::arg("open"), py::arg("both_directions"), py::arg("sums"), py::arg("threads"), py::arg("progress"));
   module.def("with_two_sided", &with_two_sided_of, py::arg("scene"), py::arg("names"));
   module.def("view", &view_of, py::arg("scene"), py::arg("point"), py::arg("normal"), py::arg("on"), py::arg("faces"),
              py::arg("digits"), py::arg("precision_cap"), py::arg("measure"));

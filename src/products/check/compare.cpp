@@ -19,6 +19,7 @@
 #include "files/file.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
+#include "matrix/columns.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
@@ -32,7 +33,7 @@ namespace {
 class FactFinder {
  public:
   FactFinder(const Truth& truth, const std::vector<Measured>& values)
-      : truth_(truth), order_(order_of(truth)), width_(truth.sources.size()) {
+      : truth_(truth), sums_(matrix::sums_among(truth.further)), order_(order_of(truth)), width_(truth.sources.size()) {
     NameList rows;
     for (const std::string& name : order_.rows) (void)rows.number_of(name);
     entries_.resize(order_.rows.size() * width_);
@@ -62,11 +63,12 @@ class FactFinder {
     if (!largest || one.by > largest->by) largest = std::move(one);
   }
 
+  // Sums of groups are not parts of a row.
   void look_at_row(std::size_t i) {
     double sum = 0.0, lower = 0.0, upper = 0.0;
     for (std::size_t j = 0; j < width_; ++j) {
       const auto& [in_truth, value, least, most] = entries_[i * width_ + j];
-      if (!in_truth) continue;
+      if (!in_truth || std::ranges::find(sums_, truth_.sources[j]) != sums_.end()) continue;
       const auto entry = [&, f = value] { return MatrixFacts::Largest{f, order_.rows[i], truth_.sources[j]}; };
       if (value < 0.0 && (facts_.negative++ == 0 || value < facts_.least.by)) facts_.least = entry();
       if (value > 1.0 && (facts_.above_one++ == 0 || value > facts_.largest.by)) facts_.largest = entry();
@@ -91,6 +93,7 @@ class FactFinder {
   }
 
   const Truth& truth_;
+  const std::vector<std::string> sums_;
   const matrix::Order order_;
   const std::size_t width_;
   std::vector<Entry> entries_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -125,16 +126,32 @@ table::Head head_of(const Scene& scene, std::span<const Selection> from, std::sp
   if (surroundings.back) further.emplace_back(kBack);
   if (surroundings.open) further.emplace_back(kOpen);
   if (surroundings.buried) further.emplace_back(kBuried);
+  further.insert(further.end(), surroundings.sums.begin(), surroundings.sums.end());
   if (!further.empty()) head.set("further", std::move(further));
   return head;
 }
 
 // --- Tables ---
 
+namespace {
+
+constexpr std::string_view kSum = "(sum ";
+
+}  // namespace
+
+std::string name_of(const GroupSum& sum) { return std::string(kSum) + sum.name + ')'; }
+
+std::vector<std::string> sums_among(std::vector<std::string> further) {
+  std::erase_if(further, [](const std::string& name) { return !name.starts_with(kSum); });
+  return further;
+}
+
 table::Table table_of(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options,
                       const Balanced* balanced) {
   const Factors& all = matrix.factors;
-  const Surroundings surroundings{!matrix.back.empty(), !matrix.open.empty(), !matrix.buried.empty()};
+  Surroundings surroundings{!matrix.back.empty(), !matrix.open.empty(), !matrix.buried.empty()};
+  const std::span<const GroupSum> sums = balanced != nullptr ? std::span<const GroupSum>() : matrix.sums;
+  for (const GroupSum& sum : sums) surroundings.sums.push_back(name_of(sum));
   const table::Fields<Entry>& fields = balanced != nullptr ? columns_with_balanced() : columns();
   table::Table table("matrix", head_of(scene, all.from, all.to, options, surroundings), fields.columns());
   Entry entry;
@@ -154,6 +171,7 @@ table::Table table_of(const Scene& scene, const Matrix& matrix, const ViewFactor
     if (surroundings.back) add(kBack, matrix.back, &Balanced::back, i, true);
     if (surroundings.open) add(kOpen, matrix.open, &Balanced::open, i, false);
     if (surroundings.buried) add(kBuried, matrix.buried, &Balanced::buried, i, false);
+    for (std::size_t k = 0; k < sums.size(); ++k) add(surroundings.sums[k], sums[k].factors, nullptr, i, true);
   }
   return table;
 }
@@ -164,7 +182,8 @@ constexpr const char* kAdvice = "use the file as `exactff matrix` wrote it";
 
 class NamedReader {
  public:
-  NamedReader(const table::Table& table, const std::filesystem::path& file) : table_(table) {
+  NamedReader(const table::Table& table, const std::filesystem::path& file)
+      : table_(table), sums_(sums_among(table.head().list("further"))) {
     named_.file = file.string();
     named_.head = table.head();
     const bool has_columns = std::ranges::all_of(
@@ -173,10 +192,10 @@ class NamedReader {
       complain(0, "is no matrix of view factors, or has no entries", "give a file written by `exactff matrix -o`");
       problems_.throw_if_any();
     }
-    for (std::size_t i = 0; i < table.rows(); ++i) take(i);
-    problems_.throw_if_any();
     from_ = table.texts(table.column("from").value());
     to_ = table.texts(table.column("to").value());
+    for (std::size_t i = 0; i < table.rows(); ++i) take(i);
+    problems_.throw_if_any();
   }
 
   NamedMatrix read() {
@@ -196,18 +215,23 @@ class NamedReader {
     const ViewFactor& f = factors_.emplace_back(entry_.factor);
     if (bad) {
       complain(table_.line_of(row), "column " + text::in_quotes(*bad) + " has an impossible value");
-    } else if (!(0.0 <= f.lower && f.lower <= f.value && f.value <= f.upper && f.upper <= 1.0) ||
+    } else if (!(0.0 <= f.lower && f.lower <= f.value && f.value <= f.upper && f.upper <= most_to(to_[row])) ||
                !(f.area_from > 0.0)) {
       complain(table_.line_of(row),
                "the entry is not within its bounds, these are not within 0 and 1, or the area is not positive");
     }
   }
 
+  // Factors to patches that hide nothing, or have fronts in common, may add up to more than 1.
+  [[nodiscard]] double most_to(const std::string& to) const {
+    return std::ranges::find(sums_, to) != sums_.end() ? std::numeric_limits<double>::max() : 1.0;
+  }
+
   // Those of the first row: up to the first entry of another.
   void find_columns() {
     width_ = 1;
     while (width_ < factors_.size() && from_[width_] == from_.front() && to_[width_] != to_.front()) ++width_;
-    patches_ = width_;
+    known_ = patches_ = width_ - std::min(sums_.size(), width_ - 1);
     const auto take_off = [&](std::string_view name) {
       const bool there = patches_ > 0 && to_[patches_ - 1] == name;
       patches_ -= there ? 1 : 0;
@@ -228,6 +252,7 @@ class NamedReader {
             table_.line_of(std::min(i, factors_.size() - 1)),
             "the row of " + text::in_quotes(from_[first]) + " has not the columns of the first row, or two areas");
       }
+      if (i - first >= known_) continue;
       entries_of(i - first).push_back(factors_[i]);
       named_.lines.push_back(table_.line_of(i));
     }
@@ -235,7 +260,7 @@ class NamedReader {
 
   std::vector<ViewFactor>& entries_of(std::size_t column) {
     if (column < patches_) return named_.entries;
-    if (has_buried_ && column + 1 == width_) return named_.buried;
+    if (has_buried_ && column + 1 == known_) return named_.buried;
     return column == patches_ && has_back_ ? named_.back : named_.open;
   }
 
@@ -243,9 +268,11 @@ class NamedReader {
   NamedMatrix named_;
   Entry entry_;  // kept to avoid reallocation
   std::vector<ViewFactor> factors_;
+  std::vector<std::string> sums_;           // names of columns
   std::span<const std::string> from_, to_;  // of the table
   text::ProblemList problems_;
   std::size_t width_ = 1;    // entries of a row
+  std::size_t known_ = 1;    // those that are no sums
   std::size_t patches_ = 1;  // those to patches
   bool has_back_ = false, has_buried_ = false;
 };

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "exactff/matrix.h"
 #include "table/fields.h"
@@ -31,9 +32,13 @@ std::optional<Word> named(std::string_view word) {
   return std::nullopt;
 }
 
+// Of the additional columns of a table, those that are sums of groups.
+[[nodiscard]] std::vector<std::string> sums_among(std::vector<std::string> further);
+
 // The columns besides patches.
 struct Surroundings {
   bool back = false, open = false, buried = false;
+  std::vector<std::string> sums = {};  // names of columns
 };
 
 // Everything that the entries depend on.

@@ -8,6 +8,8 @@
 #include "matrix/entry_jobs.h"
 #include "matrix/row_facts.h"
 #include "matrix/surroundings.h"
+#include "text/escape.h"
+#include "text/refuse.h"
 
 namespace exactff::matrix {
 namespace {
@@ -98,6 +100,63 @@ std::vector<Sum> clipped_row_sums(const Scene& scene, const Matrix& matrix) {
     if (sum.lower <= 1.0) sum.upper = std::min(sum.upper, 1.0);  // else a bound does not hold, and it shows
   }
   return sums;
+}
+
+namespace {
+
+std::vector<std::size_t> columns_of(const Scene& scene, const std::string& name, const std::vector<Selection>& to) {
+  std::set<std::size_t> columns;
+  for (const Selection& part : scene.select_all(name)) {
+    const auto found = std::ranges::find(to, part);
+    if (found == to.end()) {
+      text::refuse("the sum of " + text::in_quotes(name, text::kShownName) + " is asked for, and its part " +
+                       text::in_quotes(scene.name_of(part), text::kShownName) + " is no column",
+                   "a sum is of columns of the matrix", "name it by --to as well");
+    }
+    columns.insert(static_cast<std::size_t>(found - to.begin()));
+  }
+  return {columns.begin(), columns.end()};
+}
+
+ViewFactor sum_of(const Factors& all, std::size_t row, const std::vector<std::size_t>& columns, bool at_most_one,
+                  double accuracy) {
+  ViewFactor sum = all.at(row, columns.front());
+  for (const std::size_t column : std::span(columns).subspan(1)) {
+    const ViewFactor& f = all.at(row, column);
+    sum.value += f.value;
+    if (f.lower > 0.0) sum.lower = sum.lower == 0.0 ? f.lower : below(sum.lower + f.lower);
+    if (f.upper > 0.0) sum.upper = sum.upper == 0.0 ? f.upper : above(sum.upper + f.upper);
+    sum.area_to += f.area_to;
+    sum.claim = weaker(sum.claim, f.claim);
+    if (f.way == Way::kPoints) sum.way = f.way;
+    if (sum.limit == Limit::kNone) sum.limit = f.limit;
+    sum.cells += f.cells;
+    sum.event_cells += f.event_cells;
+  }
+  if (at_most_one && sum.lower <= 1.0)
+    sum.upper = std::min(sum.upper, 1.0);  // else a bound does not hold, and it shows
+  sum.value = std::clamp(sum.value, sum.lower, sum.upper);
+  sum.accurate = sum.upper - sum.lower <= accuracy;
+  return sum;
+}
+
+}  // namespace
+
+void add_sums(const Scene& scene, std::span<const std::string> names, double accuracy, Matrix& matrix) {
+  const kernel::StandardArithmetic arithmetic;
+  const Factors& all = matrix.factors;
+  const bool at_most_one = are_different(all.to) && scene.transparent().empty() && !have_fronts_in_common(scene);
+  for (const std::string& name : names) {
+    if (std::ranges::find(matrix.sums, name, &GroupSum::name) != matrix.sums.end()) {
+      text::refuse("the sum of " + text::in_quotes(name, text::kShownName) + " is asked for twice",
+                   "its column would be there twice", "give each name once");
+    }
+    GroupSum sum{name, columns_of(scene, name, all.to), {}};
+    for (std::size_t i = 0; i < all.from.size(); ++i) {
+      sum.factors.push_back(sum_of(all, i, sum.columns, at_most_one, accuracy));
+    }
+    matrix.sums.push_back(std::move(sum));
+  }
 }
 
 std::vector<std::string> reasons_against_one(const Scene& scene, const Factors& factors, Surroundings known) {

@@ -34,6 +34,22 @@ void add_column(files::NpzFile& file, const std::string& name, const std::vector
   file.add(name + "_radius", radii);
 }
 
+void add_sums_of(files::NpzFile& file, const Matrix& matrix) {
+  if (matrix.sums.empty()) return;
+  std::vector<std::string> names;
+  for (const GroupSum& sum : matrix.sums) names.push_back(sum.name);
+  std::vector<double> values, radii;
+  for (std::size_t i = 0; i < matrix.factors.from.size(); ++i) {
+    for (const GroupSum& sum : matrix.sums) {
+      values.push_back(sum.factors[i].value);
+      radii.push_back(radius_of(sum.factors[i]));
+    }
+  }
+  file.add_texts("sum_of", names);
+  file.add("sum", values);
+  file.add("sum_radius", radii);
+}
+
 void add_names(files::NpzFile& file, const char* name, const Scene& scene, const std::vector<Selection>& patches) {
   std::vector<std::string> names;
   for (const Selection& patch : patches) names.push_back(scene.name_of(patch));
@@ -81,6 +97,7 @@ void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::
   add_column(file, "back", matrix.back, balanced == nullptr ? nullptr : &balanced->back);
   add_column(file, "open", matrix.open, balanced == nullptr ? nullptr : &balanced->open);
   add_column(file, "buried", matrix.buried, balanced == nullptr ? nullptr : &balanced->buried);
+  if (balanced == nullptr) add_sums_of(file, matrix);
   file.commit();
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 // The rows of a matrix as `exactff matrix -o` writes them. Rows:
 // from,to,factor,lower,upper,claim,way,accurate,area_from.
-std::string matrix_text(const std::string& rows) {
+std::string matrix_text(const std::string& rows, const std::string& further = "\"(back)\"") {
   const auto text = table::Type::kText;
   const table::Table empty("matrix", {},
                            {{.name = "from", .type = text, .key = true},
@@ -32,7 +32,7 @@ std::string matrix_text(const std::string& rows) {
                             {.name = "accurate", .type = table::Type::kFlag},
                             {.name = "area_from"}});
   std::string all = table::csv_text(empty);
-  all.insert(all.find("\"columns\""), "\"further\":[\"(back)\"],");
+  all.insert(all.find("\"columns\""), "\"further\":[" + further + "],");
   return all + rows;
 }
 
@@ -92,6 +92,20 @@ class CheckMatrix : public testing::Test {
   const validation::TemporaryDirectory directory_;
   std::string truth_;
 };
+
+TEST_F(CheckMatrix, ASumOfAGroupIsNoPartOfItsRow) {
+  const auto rows = [](const char* b, const char* sum) {
+    return std::string("a,b,") + b +
+           ",0.5,0.5,estimated,cells,yes,1\na,c,0.25,0.25,0.25,estimated,cells,yes,1\na,(sum d)," + sum +
+           ",0.75,0.75,estimated,cells,yes,1\n";
+  };
+  const std::string truth = write("sums.csv", matrix_text(rows("0.5", "0.75"), "\"(sum d)\""));
+  const std::string changed = write("changed.csv", matrix_text(rows("0.625", "0.875"), "\"(sum d)\""));
+  const Report found = compare(truth, changed, {});
+  EXPECT_EQ(found.overall.absolute.max, 0.125);
+  ASSERT_TRUE(found.matrix && found.matrix->row_sum);
+  EXPECT_EQ(found.matrix->row_sum->by, 0.125);
+}
 
 TEST_F(CheckMatrix, EveryFormGivesTheSameErrors) {
   const std::vector<std::size_t> shape{3, 3};

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exactff/exact.h"
@@ -619,6 +620,79 @@ TEST(Matrix, TwoSidedRefusesTakenNames) {
   add(taken, "wall (back)", square(1.0, 1.0));
   const Scene with_name = generate::build(taken);
   EXPECT_THROW((void)with_two_sided(with_name, std::vector{with_name.select("wall")}), InputError);
+}
+
+// --- Sums of groups ---
+
+// Of cells, against the factors to the undivided patches; and as their file has them.
+TEST(MatrixSums, OfCellsHoldTheFactorsOfTheirPatches) {
+  const std::pair<Scene, double> scenes[] = {
+      {generate::build(open_box()), 0.6},
+      {read_scene(EXACTFF_DATA_DIR "/scenes/formats/test4.vs3"), 2.0},
+      {read_scene(EXACTFF_DATA_DIR "/scenes/cornell_box.obj"), 400.0},
+  };
+  for (const auto& [scene, length] : scenes) {
+    const Scene cells = divided(scene, length).scene;
+    std::vector<std::string> names;
+    for (std::size_t p = 0; p < 3; ++p) names.push_back(scene.patches()[p].name);
+    const std::vector<Selection> whole_from{scene.select(names.front())}, from = cells.select_all(names.front());
+    const Options options{.factors = {.accuracy = 1e-4}};
+    const Matrix truth = compute(scene, whole_from, all_of(scene), options);
+    Matrix matrix = compute(cells, from, all_of(cells), options);
+    add_sums(cells, names, 1e-3, matrix);
+    ASSERT_EQ(matrix.sums.size(), names.size());
+    for (std::size_t p = 0; p < names.size(); ++p) {
+      const GroupSum& sum = matrix.sums[p];
+      EXPECT_EQ(name_of(sum), "(sum " + names[p] + ')');
+      EXPECT_EQ(sum.columns.size(), cells.select_all(names[p]).size());
+      double lower = 0.0, upper = 0.0, area = 0.0;  // means over the cells of the first patch
+      for (std::size_t i = 0; i < from.size(); ++i) {
+        const ViewFactor& f = sum.factors[i];
+        double value = 0.0;
+        for (const std::size_t j : sum.columns) value += matrix.factors.at(i, j).value;
+        EXPECT_NEAR(f.value, value, 1e-12);
+        EXPECT_LE(f.lower, f.value);
+        EXPECT_LE(f.value, f.upper);
+        EXPECT_LE(f.upper, 1.0);
+        EXPECT_EQ(f.accurate, f.upper - f.lower <= 1e-3);
+        lower += f.area_from * f.lower, upper += f.area_from * f.upper, area += f.area_from;
+      }
+      const ViewFactor& whole_factor = truth.factors.at(0, p);
+      EXPECT_LE(lower / area, whole_factor.upper + 1e-12) << names[p];
+      EXPECT_GE(upper / area, whole_factor.lower - 1e-12) << names[p];
+    }
+  }
+}
+
+TEST(MatrixSums, RefuseWhatIsNoColumnUnknownOrTwice) {
+  const Scene scene = divided(generate::build(open_box()), 0.6).scene;
+  const std::vector<Selection> from{scene.select("left:1")};
+  const auto refused = [&](std::vector<Selection> to, const std::vector<std::string>& names) {
+    Matrix matrix{{from, to, std::vector<ViewFactor>(to.size())}, {}, {}, {}};
+    try {
+      add_sums(scene, names, 1e-6, matrix);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused(scene.select_all("floor"), {"floor"}), "");
+  EXPECT_NE(refused({scene.select("floor:1")}, {"floor"}).find("is no column"), std::string::npos);
+  EXPECT_NE(refused(scene.select_all("floor"), {"floor", "floor"}).find("twice"), std::string::npos);
+  EXPECT_NE(refused(scene.select_all("floor"), {"roof"}), "");
+}
+
+TEST_F(MatrixFilesOfTheCommand, HaveSumsThatAreReadAsNoPatches) {
+  const std::vector<std::string> command = {scene_,  "--accuracy", "1e-3",    "--to", "srf-1,srf-2,sky",
+                                            "--sum", "srf-[12]",   "--plain", "-o",   file("m.csv"),
+                                            "--npz", file("m.npz")};
+  const validation::ProgramRun made = run(command);
+  ASSERT_EQ(made.exit_code, 0) << made.output;
+  EXPECT_NE(made.output.find("\t(sum srf-[12])\t"), std::string::npos) << made.output;
+  const NamedMatrix read = read_named(file("m.csv"));
+  EXPECT_EQ(read.to, (std::vector<std::string>{"srf-1", "srf-2"}));
+  EXPECT_EQ(read.open.size(), read.from.size());
+  EXPECT_EQ(run({scene_, "--to", "srf-1", "--sum", "srf-2"}).exit_code, 2);
 }
 
 }  // namespace

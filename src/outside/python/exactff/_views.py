@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field, replace
-from typing import Any, Callable, Iterator, Literal, Mapping, NamedTuple, Optional
+from typing import Any, Callable, Iterator, Literal, Mapping, NamedTuple, Optional, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -83,6 +83,7 @@ class ViewFactorMatrix:
     row_sums: Floats
     reasons_against_one: tuple[str, ...]
     reciprocity: Optional[Reciprocity]  #: None unless both directions were computed apart
+    sums: Mapping[str, tuple[ViewFactor, ...]]  #: for each name in `sums`, the sum of each row over its columns
 
     def __getitem__(self, names: tuple[str, str]) -> ViewFactor:
         """``matrix["floor", "light"]``."""
@@ -139,6 +140,8 @@ class ViewFactorMatrix:
         ``save`` then writes these values, and ``.csv`` both."""
         if self._made is None:
             refuse("the matrix was copied or pickled", "a copy has the numbers alone", "balance the first one")
+        if self.sums:
+            refuse("the matrix has sums", "their balanced values are not computed", "leave out sums, and add values up")
         entries, back, free, below, _, made = self._made.balanced()
         n = len(self.from_names)
 
@@ -356,7 +359,8 @@ def _patches(scene: Scene, names: Names, what: str, sky: bool = False) -> list[s
 
 def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Names = None, *, accuracy: float = 1e-6,
                        budget: int = 100_000, certify: bool = False, backs: bool = False, sky: bool = False,
-                       both_directions: bool = False, threads: int = 0, progress: Progress = None) -> ViewFactorMatrix:
+                       both_directions: bool = False, sums: Sequence[str] = (), threads: int = 0,
+                       progress: Progress = None) -> ViewFactorMatrix:
     """All view factors between two lists of patches, the values of ``exactff matrix`` bit for bit.
 
     Parameters
@@ -367,6 +371,8 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
     accuracy, budget, certify : of each entry, as in :func:`view_factor`
     backs, sky : also compute what meets the backs of faces, and what is open
     both_directions : compute F_ij and F_ji apart, so that ``reciprocity`` tests one against the other
+    sums : names or patterns, each of which adds the sum of each row over all of its columns, such as the cells of a
+        divided patch. Bounds are sums, rounded outward; the claim is the weakest one
     threads : 0 for as many as this process may use; no value depends on it
     progress : None for a bar of tqdm on a terminal; True, False, or a function of (done, total)
 
@@ -377,9 +383,9 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
         columns.remove("sky")
         sky = True
     with shown(progress, "view factor") as tell:
-        entries, back, free, below, sums, reasons, mutual, made = _exactff.view_factor_matrix(
+        entries, back, free, below, row_sums, reasons, mutual, of_groups, made = _exactff.view_factor_matrix(
             scene._scene, rows, columns, _accuracy(accuracy), _budget(budget), bool(certify), bool(backs), bool(sky),
-            bool(both_directions), _arguments.thread_count(threads), tell)
+            bool(both_directions), list(sums), _arguments.thread_count(threads), tell)
     table = [ViewFactor(*entry) for entry in entries]
     shape = (len(rows), len(columns))
 
@@ -398,7 +404,8 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
         array(lambda f: f.way, np.str_), array(lambda f: f.accurate, np.bool_), array(lambda f: f.limit, np.str_),
         np.array([row[0].area_from for row in (by_rows if columns else zip(lists[0] or lists[1] or lists[2] or ()))]),
         np.array([f.area_to for f in by_rows[0]] if by_rows else []), lists[0], lists[1], lists[2],
-        np.array(sums, np.float64).reshape(-1, 2), tuple(reasons), reciprocity, by_rows, made, scene._read)
+        np.array(row_sums, np.float64).reshape(-1, 2), tuple(reasons), reciprocity,
+        {name: tuple(ViewFactor(*f) for f in one) for name, one in zip(sums, of_groups)}, by_rows, made, scene._read)
 
 
 def _reciprocity(found: Any, rows: list[str], columns: list[str]) -> Reciprocity:
