@@ -15,6 +15,7 @@ constexpr std::size_t kMostToMiss = 256;                         // occluders wh
 constexpr std::size_t kMostToCover = 64;                         // occluders of which one may cover another
 constexpr std::size_t kMostDirections = 16;
 constexpr double kSameDirection = 0x1p-30;
+constexpr int kHalvings = 8;  // of slivers
 
 }  // namespace
 
@@ -39,11 +40,8 @@ double most_area(const std::vector<Vec3>& part) { return part.empty() ? 0.0 : ar
 
 }  // namespace
 
-LowOccluder::LowOccluder(const Side& above, std::span<const Vec3> occluder) {
-  for (const Vec3& corner : occluder) {
-    height_ = std::max(height_, above.height(corner) + kOfHeight);
-    box_.include(corner);
-  }
+LowOccluder::LowOccluder(const Side& above, std::span<const Vec3> occluder) : above_(above) {
+  for (const Vec3& corner : occluder) height_ = std::max(height_, above.height(corner) + kOfHeight);
   for (std::size_t i = 0; i < occluder.size(); ++i) {
     const Vec3 along = kernel::difference(occluder[(i + 1) % occluder.size()], occluder[i]);
     const Vec3 across = kernel::cross(along, above.normal);
@@ -57,30 +55,53 @@ LowOccluder::LowOccluder(const Side& above, std::span<const Vec3> occluder) {
   }
 }
 
-double LowOccluder::hidden_from(std::span<const Vec3> polygon, double size) const {
-  Box box;
-  double perimeter = 0.0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    box.include(polygon[i]);
-    perimeter += kernel::distance(polygon[i], polygon[(i + 1) % polygon.size()]);
+double LowOccluder::hidden_from(std::span<const Vec3> polygon, std::span<const Vec3> target,
+                                const FactorBound& of_target) const {
+  double rise = HUGE_VAL, farthest = 0.0;  // of the target
+  for (const Vec3& corner : target) {
+    rise = std::min(rise, above_.height(corner) - kOfHeight);
+    for (const Vec3& x : polygon) farthest = std::max(farthest, kernel::distance(x, corner) + kOfHeight);
   }
-  const double apart = gap(box, box_) - height_ - kOfHeight;
-  const double far = apart > 0.0 ? size * height_ * height_ / (4.0 * apart * apart) : HUGE_VAL;
+  const double reach = rise > 0.0 ? height_ * farthest / rise : HUGE_VAL;
+  double least = HUGE_VAL, around = 0.0;
   std::vector<Vec3> covered(polygon.begin(), polygon.end());
-  for (const Side& side : around_) covered = part_behind(side, covered);
-  return std::min(far, most_area(covered) + (perimeter + kOfHeight) * height_) * kOfBounds;
+  for (std::size_t i = 0; i < around_.size(); ++i) {
+    const Side& line = around_[i];
+    const Vec3 along = kernel::cross(line.normal, above_.normal);
+    double first = HUGE_VAL, last = -HUGE_VAL, left = HUGE_VAL, right = -HUGE_VAL;
+    for (const Vec3& x : polygon) {
+      const double out = line.height(x), aside = kernel::dot(along, x);
+      first = std::min(first, out), last = std::max(last, out);
+      left = std::min(left, aside), right = std::max(right, aside);
+    }
+    const double width = right - left + kOfHeight, until = std::min(reach, std::max(kNear, first));
+    const std::vector<Vec3> near = part_behind({line.normal, line.offset - until}, polygon);
+    const double most = near.empty() ? 0.0 : of_target.on(near), end = std::min(reach, last + kOfHeight);
+    const double far = end > until ? width * height_ * height_ / 4.0 * (1.0 / until - 1.0 / end) : 0.0;
+    const double outside = width * height_ * std::sqrt(most);
+    least =
+        std::min(least, std::min(most_area(near) * most, most_area(part_behind(line, polygon)) * most + outside) + far);
+    if (i % 2 != 0) continue;
+    covered = part_behind(line, covered);
+    around += outside + far;
+  }
+  return std::min(least, covered.empty() ? around : most_area(covered) * of_target.on(covered) + around) * kOfBounds;
 }
 
 HiddenBound::HiddenBound(const Sight& sight, const Plane& source_plane, std::span<const Vec3> directions,
-                         const Occluder& occluder) {
-  const std::vector<Vec3> source = sight.points.positions(sight.source), root = positions_of(sight.root.corners);
-  const double size = area(source), size_of_root = area(root);
+                         const Occluder& occluder)
+    : receiver_(sight.receiver),
+      source_plane_(source_plane),
+      source_(sight.points.positions(sight.source)),
+      of_source_(source_, source_plane, sight.receiver) {
+  const std::vector<Vec3> root = positions_of(sight.root.corners);
+  const double size = area(source_), size_of_root = area(root);
   const std::vector<Vec3> ring = sight.points.positions(occluder.ring);
   const auto try_direction = [&](const Vec3& normal) {
     double highest = -HUGE_VAL;
     for (const Vec3& corner : ring) highest = std::max(highest, kernel::dot(normal, corner));
     const Side plane{normal, -highest};
-    const std::vector<Vec3> part = part_behind(plane, source);
+    const std::vector<Vec3> part = part_behind(plane, source_);
     if (most_area(part) > kSmall * size || most_area(part_behind(plane, root)) > kMost * size_of_root) return;
     behind_.push_back({plane, most_area(part), FactorBound(part, source_plane, sight.receiver)});
   };
@@ -90,13 +111,16 @@ HiddenBound::HiddenBound(const Sight& sight, const Plane& source_plane, std::spa
   }
   LowOccluder above_receiver(Side::of(sight.receiver), ring), above_source(Side::of(source_plane), ring);
   if (above_receiver.height() < kLow) above_receiver_ = std::move(above_receiver);
-  if (above_source.height() < kLow) from_source_ = above_source.hidden_from(source, size);
-  may_be_small_ = !behind_.empty() || above_receiver_ || from_source_ < kSmall * size;
+  if (above_source.height() < kLow) above_source_ = std::move(above_source);
+  may_be_small_ = !behind_.empty() || above_receiver_ || above_source_;
 }
 
 double HiddenBound::on(std::span<const Vec3> cell, double most, double size) const {
-  double least = from_source_;
-  if (above_receiver_) least = std::min(least, above_receiver_->hidden_from(cell, size));
+  double least = HUGE_VAL;
+  if (above_receiver_) least = above_receiver_->hidden_from(cell, source_, of_source_);
+  if (above_source_) {
+    least = std::min(least, above_source_->hidden_from(source_, cell, {cell, receiver_, source_plane_}));
+  }
   for (const auto& [plane, area, part] : behind_) {
     const double from_part = most_area(part_behind(plane, cell)) * most;
     if (from_part < least)
@@ -108,6 +132,7 @@ double HiddenBound::on(std::span<const Vec3> cell, double most, double size) con
 CoverBound::CoverBound(const Sight& sight, std::uint32_t inner, std::uint32_t outer, std::optional<Neighbour> neighbour)
     : plane_(Side::of(*sight.occluders[outer].plane)),
       inner_(sight.points.positions(sight.occluders[inner].ring)),
+      receiver_(Side::of(sight.receiver)),
       behind_(kOfHeight) {
   const std::vector<Vec3> root = positions_of(sight.root.corners);
   const auto highest = [&](std::span<const Vec3> corners) {
@@ -126,9 +151,7 @@ CoverBound::CoverBound(const Sight& sight, std::uint32_t inner, std::uint32_t ou
       const Vec3 &a = other[i], &b = other[(i + 1) % other.size()];
       const double height = std::max(std::abs(plane_.height(a)), std::abs(plane_.height(b))) + kOfHeight;
       behind_ = std::max(behind_, height);
-      slivers_.push_back({2.0 * (kernel::distance(a, b) + kOfHeight) * height, {}});
-      slivers_.back().box.include(a);
-      slivers_.back().box.include(b);
+      slivers_.push_back({a, b, height, 2.0 * (kernel::distance(a, b) + kOfHeight) * height, 2.0 * height});
     }
     const auto last = std::ranges::find(other, outline.back());
     if (last == other.end()) return;
@@ -138,32 +161,62 @@ CoverBound::CoverBound(const Sight& sight, std::uint32_t inner, std::uint32_t ou
     outline.insert(outline.end(), other.begin() + 1, other.end() - 1);
   }
   const Side above = plane_.opposite();
-  add(part_behind({above.normal, above.offset - behind_}, inner_), 2.0, slivers_);
+  const std::vector<Vec3> beyond = part_behind({above.normal, above.offset - behind_}, inner_);
+  if (!beyond.empty()) slivers_.push_back(Sliver::of(beyond, 2.0));
   take_outline(std::move(outline));
   may_be_small_ = !outwards_.empty() && on({}, 1.0, 1.0) < kSmall;
 }
 
-void CoverBound::add(std::span<const Vec3> part, double times, std::vector<Sliver>& slivers) {
-  if (part.empty()) return;
-  slivers.push_back({times * (area({part.begin(), part.end()}) + kOfHeight), {}});
-  for (const Vec3& corner : part) slivers.back().box.include(corner);
+// About the longest line between corners. With a chord across it, it spans a part of the polygon: half their product.
+CoverBound::Sliver CoverBound::Sliver::of(std::span<const Vec3> convex, double times) {
+  Sliver sliver{convex.front(), convex.front(), 0.0, times * most_area({convex.begin(), convex.end()}), 0.0};
+  double length = 0.0;
+  for (const Vec3& a : convex) {
+    for (const Vec3& b : convex) {
+      if (kernel::distance(a, b) > length) length = kernel::distance(a, b), sliver.from = a, sliver.to = b;
+    }
+  }
+  const Vec3 along = kernel::difference(sliver.to, sliver.from);
+  for (const Vec3& corner : convex) {
+    const Vec3 p = kernel::difference(corner, sliver.from);
+    const double aside = length > kShortest ? kernel::length(kernel::cross(along, p)) / length : kernel::length(p);
+    sliver.thickness = std::max(sliver.thickness, aside + kOfHeight);
+  }
+  sliver.density = length > kShortest ? 2.0 * sliver.area / length : HUGE_VAL;
+  return sliver;
+}
+
+double CoverBound::Flux::through(const Sliver& sliver, const Vec3& from, const Vec3& to, int times_to_halve) const {
+  Box box;
+  box.include(from);
+  box.include(to);
+  const double margin = sliver.thickness + aside + kOfHeight, apart = gap(cell, box) - margin;
+  const double length = kernel::distance(from, to);
+  if (times_to_halve > 0 && apart < length && length > kShortest) {
+    const Vec3 middle = kernel::along(from, kernel::difference(to, from), 0.5);
+    return std::min(sliver.area, through(sliver, from, middle, times_to_halve - 1) +
+                                     through(sliver, middle, to, times_to_halve - 1));
+  }
+  const double area = std::min(sliver.area, sliver.density * (length + kOfHeight));
+  if (!(apart > 0.0)) return area;
+  const double height = std::max({0.0, receiver.height(from), receiver.height(to)}) + margin;
+  return area * std::min(1.0, size / (std::numbers::pi * apart * apart) * std::min(1.0, height / apart));
 }
 
 void CoverBound::take_outline(std::vector<Vec3> outline) {
   std::vector<Vec3> corners;
-  const auto merge = [&](const Vec3& corner) {
-    slivers_.push_back({2.0 * kernel::distance(corner, corners.back()), {}});
-    for (const Vec3& any : outline) slivers_.back().box.include(any);
+  const auto merge = [&](const Vec3& kept, const Vec3& corner, const Vec3& other) {
+    slivers_.push_back(Sliver::of(std::vector{kept, corner, other}, 2.0));
   };
-  for (const Vec3& corner : outline) {
-    if (corners.empty() || kernel::distance(corner, corners.back()) > kOneCorner) {
-      corners.push_back(corner);
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    if (corners.empty() || kernel::distance(outline[i], corners.back()) > kOneCorner) {
+      corners.push_back(outline[i]);
     } else {
-      merge(corner);
+      merge(corners.back(), outline[i], outline[(i + 1) % outline.size()]);
     }
   }
   if (corners.size() > 1 && kernel::distance(corners.back(), corners.front()) <= kOneCorner) {
-    merge(corners.front());
+    merge(corners.front(), corners.back(), corners[corners.size() - 2]);
     corners.pop_back();
   }
   if (corners.size() < 3) return;
@@ -208,19 +261,14 @@ double CoverBound::on(std::span<const Vec3> cell, double most, double size) cons
   Box box;
   for (const Vec3& corner : cell) box.include(corner);
   double sum = most_area(part_behind({plane_.normal, plane_.offset - behind_}, cell)) * most;
-  const auto count = [&](const std::vector<Sliver>& slivers) {
-    for (const Sliver& sliver : slivers) {
-      const double apart = gap(box, sliver.box) - behind_ - kOfHeight;
-      sum += sliver.area * (apart > 0.0 ? std::min(1.0, size / (std::numbers::pi * apart * apart)) : 1.0);
-    }
-  };
-  count(slivers_);
-  std::vector<Sliver> beyond;
+  const Flux flux{receiver_, box, size, behind_};
+  const auto count = [&](const Sliver& sliver) { sum += flux.through(sliver, sliver.from, sliver.to, kHalvings); };
+  std::ranges::for_each(slivers_, count);
   const std::vector<Vec3> reached = within(reach);
   for (std::size_t i = 0; i < sides_.size(); ++i) {
-    add(part_behind({kernel::scaled(outwards_[i], -1.0), sides_[i] - kOfHeight}, reached), 1.0, beyond);
+    const std::vector<Vec3> beyond = part_behind({kernel::scaled(outwards_[i], -1.0), sides_[i] - kOfHeight}, reached);
+    if (!beyond.empty()) count(Sliver::of(beyond, 1.0));
   }
-  count(beyond);
   return sum * kOfBounds;
 }
 

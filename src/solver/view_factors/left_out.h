@@ -29,17 +29,20 @@ namespace exactff::view_factors {
 // and the second one, which is also that over S' of F(y -> C), is at most the area of S'. Any direction can be that of
 // h: those of all planes of the pair are tried.
 //
-// By its height. Let no point of the occluder be higher above the receiver's plane than h, and let P be its projection
-// to this plane, which is convex. From x at the distance t > 0 of P, a line in the plane has all of P on its other side
-// and is at the distance t, so the occluder is seen below an elevation a, tan a <= h / t, in a lune between the horizon
-// and a plane through x along the line. So it hides at most (1 - cos a) / 2 <= a^2 / 4 <= h^2 / (4 t^2). In a convex
-// cell, the places at the distance t of P are part of the boundary of a convex set in the cell, and no longer than the
-// cell's perimeter. So with the area of what P covers of the cell, the integral is at most
+// By its height. Let no point of the occluder be higher above the receiver's plane than h, and let a line in this plane
+// have the occluder's projection on one side. From x on its other side, at the distance t > 0, the occluder is seen
+// below an elevation a, tan a <= h / t, in a lune between the horizon and a plane through x along the line. So it hides
+// at most (1 - cos a) / 2 <= a^2 / 4 <= h^2 / (4 t^2), and nothing if the source is seen above this elevation: its
+// corners are higher than k, say, and nearer than d, so t > h d / k is enough. Where F of the source is at most m, the
+// integral over a strip of the width w along the line is thus at most
 //
-//   area + perimeter * integral over t > 0 of min(1, h^2 / (4 t^2)) = area + perimeter * h.
+//   w * integral over t > 0 of min(m, h^2 / (4 t^2)) = w h sqrt(m),
+//
+// and w h^2 / 4 (1 / t - 1 / u) from t to u; or m times its area. Any line will do, with m times the area on the
+// occluder's side of it; or all sides of the projection, with m times the area of what it covers.
 //
 // Likewise for the source: as A_i F_ij = A_j F_ji, what is hidden from the cell of the source is what is hidden from
-// the source of the cell.
+// the source of the cell. A small cell is little of what the source sees.
 //
 // Roundings. A height errs by less than 2^-46. The parts are those where it is at most kOfHeight as computed: a place
 // between the ends of a side where linear interpolation says kOfHeight is above 0 in truth. Areas get a margin of
@@ -51,18 +54,22 @@ class LowOccluder {
   LowOccluder(const Side& above, std::span<const Vec3> occluder);
 
   [[nodiscard]] double height() const { return height_; }
-  // At least the integral over the convex polygon in the plane of what is hidden; `size`: at least its area.
-  [[nodiscard]] double hidden_from(std::span<const Vec3> polygon, double size) const;
+  // At least the integral over the convex polygon in the plane of what is hidden of the convex target.
+  [[nodiscard]] double hidden_from(std::span<const Vec3> polygon, std::span<const Vec3> target,
+                                   const FactorBound& of_target) const;
 
  private:
+  static constexpr double kNear = 0x1p-6;  // where m is asked for, if the target is not high
+
+  Side above_;
   double height_ = 0.0;
-  Box box_;
-  std::vector<Side> around_;  // positive outside of its projection
+  std::vector<Side> around_;  // positive outside of its projection: along its sides, and opposite to each
 };
 
 class HiddenBound {
  public:
-  // There must be a source, in this plane. `directions`: of length 1, each tried both ways.
+  // There must be a source, in this plane, which is referred to as the sight is. `directions`: of length 1, each tried
+  // both ways.
   HiddenBound(const Sight& sight, const Plane& source_plane, std::span<const Vec3> directions,
               const Occluder& occluder);
 
@@ -81,8 +88,10 @@ class HiddenBound {
     FactorBound part;  // of its factor
   };
   std::vector<Behind> behind_;
-  std::optional<LowOccluder> above_receiver_;
-  double from_source_ = HUGE_VAL;  // if it is low above its plane
+  const Plane &receiver_, &source_plane_;
+  std::vector<Vec3> source_;
+  FactorBound of_source_;
+  std::optional<LowOccluder> above_receiver_, above_source_;
   bool may_be_small_ = false;
 };
 
@@ -91,8 +100,9 @@ class HiddenBound {
 // Let h = 0 be the plane of the outer occluder. A segment that meets the inner one begins where h <= 0, or ends at a
 // point of the inner one where h >= 0, or crosses the plane in between, in the hull of the cell and the inner occluder.
 // If the outer one does not block it, it crosses outside of it. Of all these segments, those that pass a set of places
-// in a plane carry at most the area of the set, by A_i F_ij = A_j F_ji; and where the set is at least d away, at most
-// the cell's area times that of the set over pi d^2. So with K the outer occluder, and K' the
+// in a plane carry at most the area of the set, by A_i F_ij = A_j F_ji; and where the set is at least d away, and no
+// higher than h above the receiver's plane, at most the cell's area times that of the set over pi d^2, times h / d.
+// Sets are slivers, and counted piece by piece. So with K the outer occluder, and K' the
 // polygon that its sides become when each is moved outwards as far as the hull reaches, the integral is at most
 //
 //   integral of F over the cell where h <= 0  +  twice the area of the inner one where h >= 0  +  area of K' - area of
@@ -122,12 +132,21 @@ class CoverBound {
  private:
   static constexpr double kSmall = 0x1p-8, kOneCorner = 0x1p-12;
 
-  // Places in a plane, of which each point may count from either side as often as the area says.
+  // Places in a plane about a segment, of which each point may count from either side as often as the areas say.
   struct Sliver {
-    double area = 0.0;
-    Box box;
+    Vec3 from, to;
+    double thickness;      // no place is farther from the segment
+    double area, density;  // at most all, and that of the places beside a piece of the segment, over its length
+
+    static Sliver of(std::span<const Vec3> convex, double times);
   };
-  static void add(std::span<const Vec3> part, double times, std::vector<Sliver>& slivers);
+  // At least what passes a sliver from a cell of this size.
+  struct Flux {
+    const Side& receiver;
+    Box cell;
+    double size, aside;
+    [[nodiscard]] double through(const Sliver& sliver, const Vec3& from, const Vec3& to, int times_to_halve) const;
+  };
   // Without corners that are almost those before.
   void take_outline(std::vector<Vec3> outline);
   // Of the places in the plane that are no farther outwards than this.
@@ -137,6 +156,7 @@ class CoverBound {
   std::vector<Vec3> outwards_;  // of each side
   std::vector<double> sides_;   // and its height
   std::vector<Vec3> inner_;
+  Side receiver_;
   double behind_ = 0.0;          // the most height that counts as behind the plane
   std::vector<Sliver> slivers_;  // the same for all cells
   bool may_be_small_ = false;

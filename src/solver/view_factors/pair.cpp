@@ -23,6 +23,7 @@ constexpr double kLeastMargin = 0x1p-24;           // the same
 constexpr std::uint64_t kSignsForACell = 1 << 15;  // more than where few occluders lie between
 constexpr std::size_t kManyOccluders = 256;        // an event cell of more is not worth a visit to its centre
 constexpr double kShareOfParent = 0.125;           // of a cell's error that its halves may have
+constexpr double kShareOfUnresolved = 0x1p-8;      // of all that F can be on a cell: what may be left out to resolve it
 constexpr double kTrifle = 0x1p-10;                // of the receiver's area: what may be left out at first
 constexpr double kMostLeftOut = 0.5;               // of a cell's error; if more is due to it, less is left out
 // Whether the difference of two rules tells their error. Where an edge is nearer than this, F may have a peak that both
@@ -226,10 +227,11 @@ std::shared_ptr<const Formula> Pair::formula_of_view(CellView::Outcome outcome) 
   return std::make_shared<const Formula>(sight_, view_.parts(), view_.has_horizon());
 }
 
-// As where edges are almost seen along one another.
-bool Pair::needs_many_bits(const Formula& formula, const Cell& cell) {
+// Where edges are almost seen along one another, or lie almost in the cell.
+bool Pair::is_hard(const Formula& formula, const Cell& cell) {
   return !formula.boundary().empty() && omissions_.are_possible() &&
-         !(formula.at(near_point_inside(cell)).rounding <= limits_.rounding);
+         (!(formula.at(near_point_inside(cell)).rounding <= limits_.rounding) ||
+          resolution(cell, formula) < kLeastRadii);
 }
 
 // Depth first: the cells that wait are the siblings of those on the way.
@@ -240,14 +242,21 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enou
   CellView::Outcome outcome = view(cell, depth, candidates);
   std::shared_ptr<const Formula> formula = formula_of_view(outcome);
   LeftOut left_out;
-  const bool is_simple =
-      outcome == CellView::Outcome::kKnown && (formula == nullptr || !needs_many_bits(*formula, cell));
-  if (!candidates.empty() && !is_simple) {
-    left_out = omissions_.leave_out(extent_of(cell), candidates, trifle);
-    if (!left_out.candidates.empty()) {
-      outcome = view(cell, depth, candidates);
-      formula = formula_of_view(outcome);
-    }
+  const auto is_unresolved = [&] {
+    return outcome == CellView::Outcome::kKnown && formula != nullptr && is_hard(*formula, cell);
+  };
+  const auto leave_out = [&](const Extent& extent, double most) {
+    candidates = omissions_.united(candidates, left_out);
+    left_out = omissions_.leave_out(extent, candidates, most);
+    if (left_out.candidates.empty()) return;
+    outcome = view(cell, depth, candidates);
+    formula = formula_of_view(outcome);
+  };
+  if (!candidates.empty() && (outcome != CellView::Outcome::kKnown || is_unresolved())) {
+    const Extent extent = extent_of(cell);
+    leave_out(extent, trifle);
+    const double of_unresolved = kShareOfUnresolved * extent.most * extent.size;
+    if (trifle < of_unresolved && is_unresolved()) leave_out(extent, of_unresolved);
   }
   if (outcome == CellView::Outcome::kKnown && formula == nullptr) return;
   const auto all = [&] { return omissions_.united(candidates, left_out); };
@@ -543,7 +552,8 @@ std::vector<Share> Pair::improve(Share share, const Budget& budget) {
     return result;
   }
   const double enough = kShareOfParent * share.error;
-  if (share.left_out.width() > kMostLeftOut * share.error || (share.formula == nullptr && share.way.empty())) {
+  const bool too_much_is_left_out = share.left_out.width() > kMostLeftOut * share.error;
+  if (share.formula == nullptr && (too_much_is_left_out || share.way.empty())) {
     view_.start();
     look(std::move(share.cell), 0, omissions_.united(share.candidates, share.left_out), enough, enough, result);
     return result;
@@ -556,7 +566,12 @@ std::vector<Share> Pair::improve(Share share, const Budget& budget) {
     return result;
   }
   Halves parts = cut(share.cell, sight_.receiver, by, units);
-  if (share.formula != nullptr) {
+  if (too_much_is_left_out) {
+    view_.start();
+    Candidates candidates = omissions_.united(share.candidates, share.left_out);
+    look(std::move(parts.negative), 0, candidates, enough, enough, result);
+    look(std::move(parts.positive), 0, std::move(candidates), enough, enough, result);
+  } else if (share.formula != nullptr) {
     cells_made_ += 2;
     share.cell = {};
     for (Cell* part : {&parts.negative, &parts.positive}) {

@@ -185,7 +185,7 @@ class Pair {
             std::vector<Share>& shares);
   // Null where the last view is not known, or nothing is seen.
   [[nodiscard]] std::shared_ptr<const Formula> formula_of_view(CellView::Outcome outcome) const;
-  [[nodiscard]] bool needs_many_bits(const Formula& formula, const Cell& cell);
+  [[nodiscard]] bool is_hard(const Formula& formula, const Cell& cell);
   // As bounds of what is left out ask for it.
   [[nodiscard]] Extent extent_of(const Cell& cell) const;
   // Of a view with these parts, if the source as far as the horizon has a formula, too.

@@ -64,7 +64,8 @@ TEST(FactorBound, IsAtLeastEveryFormFactorOfTheCell) {
 
 // --- What occluders hide ---
 
-// A floor, a wall or a ceiling as the source, and triangles between: low ones, such that stand at the wall, any.
+// A wall or a ceiling as the source, a floor or a part of it as the receiver, and triangles between: low ones, such
+// that stand at the wall, any.
 struct Hiding {
   PlainScene open;                        // "receiver" and "source"
   std::vector<std::vector<Vec3>> things;  // faces that hide some of it
@@ -103,7 +104,10 @@ Hiding random_cover(Random& random) {
 Hiding random_hiding(Random& random) {
   if (random.one_in(4)) return random_cover(random);
   Hiding hiding;
-  hiding.open.add_ring(hiding.open.patch("receiver"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  const double size = random.one_in(2) ? 1.0 : std::ldexp(1.0, -random.integer(0, 6));
+  const double x = (1.0 - size) * random.unit(), y = (1.0 - size) * random.unit();
+  hiding.open.add_ring(hiding.open.patch("receiver"),
+                       {{x, y, 0}, {x + size, y, 0}, {x + size, y + size, 0}, {x, y + size, 0}});
   generate::PlainPatch& source = hiding.open.patch("source");
   if (random.one_in(2)) {
     hiding.open.add_ring(source, {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}});
