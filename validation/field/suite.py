@@ -2,6 +2,7 @@
 """Asks programs the questions of data/suite.
 
 Usage: suite.py PROGRAM FOLDER [NAME...]
+       suite.py PROGRAM --board FOLDER    grades data/field/suite: its table, and FOLDER with the page
 
 Writes FOLDER/NAME.csv with the columns question and value, for every program or for those named, and times.json. What a
 program cannot be asked is left out: points are asked of methods for points and of POV-Ray, pairs of OpenFOAM and
@@ -126,12 +127,37 @@ def ask_program(program, exactff_program, folder):
                 yield q["question"], float(matrix[at[q["from"]], at[q["to"]]])
 
 
+def board(program, folder):
+    """data/field/suite.csv, from the answers in data/field/suite and what programs.csv says of the programs."""
+    field = SUITE.parent / "field"
+    about = {row["program"]: row for row in factors.rows_of(field / "suite" / "programs.csv")}
+    times = [word for row in about.values() if row["cpu_seconds"]
+             for word in ("--time", f"{row['program']}={row['cpu_seconds']}")]
+    answers = [os.path.relpath(field / "suite" / f"{name}.csv") for name in about]
+    said, *_ = factors.run([program, "check", os.path.relpath(SUITE), *answers, "--max-abs",
+                            "1e-3", *times, "-o", folder], passing=(0, 1))
+    print(said)
+    columns = "program level questions answered worst median digits_median digits_worst limits limits_kept".split()
+    with open(field / "suite.csv", "w", encoding="utf-8") as file:
+        file.write("# command: validation/field/suite.py build/exactff --board build/field/board; limit: 1e-3\n")
+        file.write(",".join(columns) + "\n")
+        for one in json.loads((pathlib.Path(folder) / "scoreboard.json").read_text())["programs"]:
+            for level in one["levels"]:
+                errors, digits = level.get("errors", {}), level.get("digits", {})
+                numbers = errors.get("max"), errors.get("median"), digits.get("median"), digits.get("worst")
+                file.write(",".join([one["name"], level["level"], str(level["cases"]), str(level["answered"]),
+                                     *("" if n is None else f"{n:.3g}" for n in numbers), str(level["limits"]),
+                                     str(level["limits_kept"])]) + "\n")
+
+
 def main(program, folder, *names):
+    if folder == "--board":
+        return board(program, *names)
     exactff_program, folder = pathlib.Path(program).resolve(), pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     times = folder / "times.json"
     seconds = json.loads(times.read_text()) if times.exists() else {}
-    for name in names or (*METHODS, "povray", *ACROSS):
+    for name in [name for name in names if name != "--quick"] or (*METHODS, "povray", *ACROSS):
         before = time.process_time() + sum(os.times()[2:4])
         answers = (ask_method(METHODS[name]) if name in METHODS else ask_povray(folder / name) if name == "povray" else
                    ask_program(name, exactff_program, folder))

@@ -50,7 +50,7 @@ std::string of(std::size_t part, std::size_t whole) { return std::to_string(part
 
 std::string digits(double relative) {
   const double value = digits_of(relative);
-  return value == kMostDigits ? "all" : text::short_number(std::floor(10.0 * value) / 10.0);
+  return value == kMostDigits ? "all" : text::short_number(std::floor(10.0 * value) / 10.0 + 0.0);  // no -0
 }
 
 // Without an error, all digits are right; without an answer, there is nothing to say.
@@ -162,7 +162,10 @@ std::string page_of(const Scoreboard& board) {
   for (const Score& score : board.scores) passed += score.report.passed() ? 1 : 0;
   std::vector<std::string> limits;
   for (const Verdict& verdict : first.verdicts) {
-    if (verdict.criterion != "finite") limits.push_back(name_of(verdict) + " at most " + text::shortest(verdict.limit));
+    if (verdict.criterion == "finite") continue;
+    const std::string limit = (is_suite(board) ? verdict.criterion : name_of(verdict)) + " at most " +
+                              text::shortest(verdict.limit) + (is_suite(board) ? " on each level" : "");
+    if (std::ranges::find(limits, limit) == limits.end()) limits.push_back(limit);
   }
   std::string text = page::page_head("Scoreboard");
   text += "<h1>Scoreboard</h1>\n<p class=\"subtitle\">" + text::counted(board.scores.size(), "program") +
