@@ -207,6 +207,15 @@ def main(program, folder):
             sys.exit(f"{q['question']}: the closed form {mp.nstr(value, 20)} is not in [{low}, {high}]")
         closed[q["question"]] = value
     judge(asked, tables, closed, out / "published.csv")
+    verdicts = [row["verdict"] for row in csv.DictReader(open(out / "published.csv", newline=""))]
+    right, rounded = (sum(v.startswith(word) for v in verdicts) for word in ("right", "rounded"))
+    page = " ".join((SUITE / "README.md").read_text().split())
+    for told in (f"{len(asked)} questions", f"{len(verdicts)} numbers", f"confirm {len(closed)} of them",
+                 f"{len(set(q['scene'] for q in asked))} small scenes",
+                 f"{right} are right to their digits, {rounded} are rounded wrongly, {len(verdicts) - right - rounded} "
+                 "are wrong"):
+        if told not in page:
+            sys.exit(f"data/suite/README.md does not say: {told}")
     print(f"{len(asked)} answers; {len(closed)} agree with closed forms")
 
 
