@@ -178,6 +178,7 @@ def judge(asked, tables, closed, out):
         writer.writeheader()
         for row in rows:
             value, low, high = truth[row["question"]]
+            row["digits"] = len(row["printed"].lower().split("e")[0].replace(".", "").lstrip("0"))
             row["truth"] = mp.nstr(value, 18, min_fixed=-4)
             row["error"], row["verdict"] = verdict(row["printed"], low, high)
             if row["alike"] and verdict(row["printed"], *truth[row["alike"]][1:])[1] != "right":
