@@ -53,7 +53,7 @@ struct TruthRow {
 
 struct Truth {
   std::string file;
-  std::string kind;    // "truth", "matrix", ...: of the table; "image"; empty for other files
+  std::string kind;    // "truth", "matrix", ...: of the table; "image"; "suite"; empty for other files
   std::string column;  // the column that `value` was read from
   std::array<std::string, 2> keys = {"receiver", "source"};  // "from" and "to", "patch" and "channel"
   std::vector<std::string> sources;  // in order of first appearance; one empty name if there is no second key
@@ -78,6 +78,13 @@ struct Truth {
 // _b) is one value for all sources: only the first row of each receiver counts. Throws one InputError with file:line
 // for every problem, including rows that occur twice.
 [[nodiscard]] Truth read_truth(const std::filesystem::path& path, const std::string& column = {});
+
+// Whether the path is the folder of a suite, such as data/suite, and its answers. `questions.csv` has the columns
+// question, level, scene, quantity, from and to. A question is a row of answers/SCENE.pairs.csv, a table of `exactff
+// matrix`, if it has a patch `from`, else of answers/SCENE.points.csv, one of `exactff truth` whose receivers are
+// questions. The keys are question and level. Throws one InputError with file:line for every problem.
+[[nodiscard]] bool is_suite(const std::filesystem::path& path);
+[[nodiscard]] Truth read_suite(const std::filesystem::path& folder);
 
 // --- Candidate -----------------------------------------------------------------------------------------------------
 
@@ -235,6 +242,12 @@ struct MatrixFacts {
   std::optional<Largest> reciprocity;  // |A_i F_ij - A_j F_ji| / min(A_i, A_j), if rows and columns are the same
 };
 
+// Of a suite: a group of questions that is graded by itself.
+struct Level {
+  std::string name;
+  std::size_t questions = 0;
+};
+
 struct Report {
   std::string truth_file;
   std::string candidate_file;       // empty for values that come from no file
@@ -255,6 +268,7 @@ struct Report {
   std::vector<double> magnitudes;         // magnitudes of the errors, ascending
   std::optional<MatrixFacts> matrix;      // if matrices were compared
   std::vector<Improvement> improvements;  // over the baseline, if there is one
+  std::vector<Level> levels;              // of a suite, in its order; `sources` are those with answers
 
   [[nodiscard]] bool passed() const;
 };
@@ -276,8 +290,9 @@ struct Options {
   Criteria criteria = {};
 };
 
-// Reads, matches and judges. Two images, OpenEXR files or NumPy arrays, are compared pixel by pixel: pixels are
-// receivers, channels are sources. Throws InputError; of images also Cancelled.
+// Reads, matches and judges. If the truth is the folder of a suite, answers may be missing, limits are those of each
+// level, and a candidate has the columns question and value. Two images, OpenEXR files or NumPy arrays, are compared
+// pixel by pixel: pixels are receivers, channels are sources. Throws InputError; of images also Cancelled.
 [[nodiscard]] Report compare(const std::filesystem::path& truth, const std::filesystem::path& candidate,
                              const Options& options = {});
 

@@ -48,7 +48,8 @@ def write_deck(path, cells, sink):
             map(str, [number, *range(len(nodes) + 1, len(nodes) + 2 * len(front) + 1)])))
         nodes += [*front, *(front - THICKNESS * cells.size * normal)]
     path.write_text(DECK.format(
-        nodes="\n".join("%d, %r, %r, %r" % (k, *map(float, node)) for k, node in enumerate(nodes, 1)),
+        # A number has at most 20 characters.
+        nodes="\n".join("%d, %.12g, %.12g, %.12g" % (k, *node) for k, node in enumerate(nodes, 1)),
         bricks="\n".join(bricks), sink=sink), encoding="ascii")
 
 

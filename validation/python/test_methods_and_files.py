@@ -1,10 +1,13 @@
 """Approximate methods, truth files and checks."""
 
+import re
+import sys
+
 import numpy as np
 import pytest
 
 import exactff
-from support import CORNELL, column, program, same_bits, truth_rows
+from support import CORNELL, SOURCE, column, program, run, same_bits, truth_rows
 
 ROOM = exactff.Scene.read(CORNELL)
 GRID = ROOM.receivers("floor", grid=(6, 5))
@@ -103,6 +106,15 @@ def test_matrices_and_scoreboards(tmp_path):
     assert sorted(file.name for file in (tmp_path / "board").iterdir()) == ["index.html", "junit.xml", "scoreboard.json"]
     with pytest.raises(exactff.InputError, match="seconds names 'other'"):
         exactff.scoreboard(tmp_path / "t.csv", files, seconds={"other": 1.0})
+
+
+def test_the_program_on_the_suites_page_answers_the_plain_level(tmp_path):
+    suite = SOURCE / "data" / "suite"
+    example = re.search(r"```python\n(.*?)```", (suite / "README.md").read_text(), re.DOTALL).group(1)
+    assert sum(bool(line.strip()) for line in example.splitlines()) <= 40
+    (tmp_path / "midpoints.csv").write_text(run(sys.executable, "-c", example, cwd=SOURCE))
+    board = exactff.scoreboard(suite, [tmp_path / "midpoints.csv"], max_abs=0.2)
+    assert board and "70 of 70: 3 digits" in board.markdown and "not asked" in board.markdown
 
 
 def test_reports_name_receivers():

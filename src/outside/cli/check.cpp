@@ -189,6 +189,8 @@ constexpr const char* kCheckFooter =
     "F, CalculiX' .vwf, numbers only or .npy. Negative entries, entries above 1, sums of rows and reciprocity are "
     "printed.\n"
     "Several candidates are a scoreboard, printed as a table in Markdown; -o DIR writes a page, JSON and JUnit XML.\n"
+    "If TRUTH is the folder of a suite, such as data/suite, candidates have the columns question and value, and are\n"
+    "graded on each of its levels; questions may be left out.\n"
     "Exit codes: 0 passed, 1 failed, 2 bad input.\n"
     "\n"
     "Examples:\n"
@@ -197,7 +199,8 @@ constexpr const char* kCheckFooter =
     "  exactff check truth.csv mine.csv --baseline accuracy.json\n"
     "  exactff check truth.exr mine.exr --rms 1e-3 --error-image errors.png\n"
     "  exactff check factors.csv view3d.out --max-abs 1e-5\n"
-    "  exactff check truth.csv ours.csv theirs.csv --max-abs 1e-4 --time ours=3.2 --time theirs=0.4 -o scoreboard";
+    "  exactff check truth.csv ours.csv theirs.csv --max-abs 1e-4 --time ours=3.2 --time theirs=0.4 -o scoreboard\n"
+    "  exactff check data/suite mine.csv theirs.csv --max-abs 1e-3 -o scoreboard";
 
 struct CheckArguments {
   std::string truth;
@@ -399,7 +402,8 @@ int check_several(const CheckArguments& args) {
 
 int run(const CheckArguments& args) {
   try {
-    return args.candidates.size() == 1 && args.folder.empty() ? check_one(args) : check_several(args);
+    const bool one = args.candidates.size() == 1 && args.folder.empty() && !check::is_suite(args.truth);
+    return one ? check_one(args) : check_several(args);
   } catch (const InputError& error) {
     if (args.github) std::cout << check::github_annotations(error) << std::flush;
     throw;
@@ -514,7 +518,8 @@ Command add_check(CLI::App& app) {
   command
       ->add_option(
           "TRUTH", args->truth,
-          "Table written by exactff: of `truth`, `matrix -o`, `radiosity -o`, a report, ...; or an image, .exr or .npy")
+          "Table written by exactff: of `truth`, `matrix -o`, `radiosity -o`, a report, ...; or an image, .exr or "
+          ".npy; or the folder of a suite")
       ->required()
       ->type_name("FILE")
       ->check(flags::is_read());

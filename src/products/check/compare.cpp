@@ -124,6 +124,12 @@ Report compare_tables(const Truth& all, const std::filesystem::path& file, const
   const std::vector<Measured> values = match(truth, candidate, options.match);
   Report report = judge(truth, values, options.criteria, candidate.file);
   if (truth.kind == "matrix") report.matrix = FactFinder(truth, values).find();
+  if (truth.kind == kSuite) {
+    for (const std::string& level : truth.sources) {
+      const auto asked = [&](const TruthRow& row) { return truth.source_of(row) == level; };
+      report.levels.push_back({level, static_cast<std::size_t>(std::ranges::count_if(truth.rows, asked))});
+    }
+  }
   return report;
 }
 
@@ -147,13 +153,16 @@ void require_file(const std::filesystem::path& file) {
 }  // namespace
 
 std::vector<Report> compare_all(const std::filesystem::path& truth, std::span<const std::filesystem::path> candidates,
-                                const Options& options) {
+                                const Options& asked) {
   const kernel::StandardArithmetic arithmetic;
-  require_file(truth);
+  const bool suite = is_suite(truth);
+  Options options = asked;
+  if (suite) options.match.partial = options.criteria.per_source = true;
+  if (!suite) require_file(truth);
   std::ranges::for_each(candidates, require_file);
   check_criteria(options.criteria);
-  const std::string kind = table::kind_of(truth);
-  const bool image = kind.empty() && exr::is_image(truth);
+  const std::string kind = suite ? std::string() : table::kind_of(truth);
+  const bool image = !suite && kind.empty() && exr::is_image(truth);
   const bool takes_arrays = !kind.empty() && kind != "truth";  // as matrices of numbers
   std::optional<Truth> table;
   std::vector<Report> reports;
@@ -164,7 +173,7 @@ std::vector<Report> compare_all(const std::filesystem::path& truth, std::span<co
                    "images are OpenEXR files and NumPy arrays of shape (height, width, 3)",
                    "give two images, or two tables");
     }
-    if (!image && !table) table = read_truth(truth, options.truth_column);
+    if (!image && !table) table = suite ? read_suite(truth) : read_truth(truth, options.truth_column);
     try {
       reports.push_back(image ? compare_images(truth, candidate, options) : compare_tables(*table, candidate, options));
     } catch (const InputError& error) {
@@ -183,7 +192,8 @@ Report compare(const std::filesystem::path& truth, const std::filesystem::path& 
 
 // Which row of the truth a value is compared with.
 //
-//   1. Look up the candidate's sources among those of the truth. Without a source column the truth must have only one.
+//   1. Look up the candidate's sources among those of the truth. Without a source column the truth must have only one,
+//      or be a suite, whose questions are found without their levels.
 //   2. Match every row of the candidate by receiver and source, or by position and source.
 //   3. No row of the truth may be matched twice. Unless the options allow it, none may be left unmatched.
 
@@ -302,10 +312,20 @@ class Matcher {
     source_.assign(table_.rows(), 0);
     const bool has_none = truth_.sources.size() == 1 && truth_.sources.front().empty();
     if (has_none) return;
+    if (sources_ == nullptr && truth_.kind == kSuite) return find_levels();
     if (sources_ == nullptr) return require_single_source();
     NameList known;
     for (const std::string& source : truth_.sources) (void)known.number_of(source);
     for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = known.find((*sources_)[i]).value_or(kNothing);
+  }
+
+  void find_levels() {
+    std::unordered_map<std::string_view, std::uint32_t> levels;
+    for (const TruthRow& row : truth_.rows) levels.try_emplace(row.receiver, row.source);
+    for (std::size_t i = 0; i < source_.size(); ++i) {
+      const auto found = levels.find((*receivers_)[i]);
+      if (found != levels.end()) source_[i] = found->second;
+    }
   }
 
   void require_single_source() const {

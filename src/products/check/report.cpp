@@ -307,7 +307,7 @@ std::vector<std::string> warnings(const Report& report) {
                     " of the truth not certified: compared with the enclosure instead");
   }
   add_words_of_matrix(report, texts);
-  if (report.overall.rows < report.truth_rows) {
+  if (report.overall.rows < report.truth_rows && report.levels.empty()) {  // a suite lists them
     texts.push_back(text::counted_of(report.truth_rows - report.overall.rows, report.truth_rows, "row") +
                     " of the truth without a value: not checked");
   }

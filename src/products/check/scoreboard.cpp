@@ -21,40 +21,74 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::size_t answered(const Report& report) { return report.overall.rows - report.overall.not_finite; }
-std::size_t limits_kept(const Report& report) {
-  const auto kept = std::ranges::count_if(report.verdicts, [](const Verdict& verdict) { return verdict.passed; });
-  return static_cast<std::size_t>(kept);
+// What is graded by itself: a whole report, or a level of a suite.
+struct Part {
+  const Statistics* statistics = nullptr;  // null if the program answered none of its questions
+  std::size_t cases = 0, limits = 0, limits_kept = 0;
+
+  [[nodiscard]] std::size_t answered() const { return statistics ? statistics->rows - statistics->not_finite : 0; }
+};
+
+Part part_of(const Report& report, const Level* level = nullptr) {
+  Part part{.statistics = &report.overall, .cases = level ? level->questions : report.truth_rows};
+  if (level) {
+    const auto found = std::ranges::find(report.sources, level->name);
+    part.statistics = found == report.sources.end() ? nullptr : &report.by_source[found - report.sources.begin()];
+  }
+  for (const Verdict& verdict : report.verdicts) {
+    if (level && verdict.source != level->name) continue;
+    ++part.limits;
+    part.limits_kept += verdict.passed ? 1U : 0U;
+  }
+  return part;
 }
 
 constexpr std::array kHeadings = {"program", "result", "answered",       "worst error",   "RMS",         "median",
                                   "90 %",    "99 %",   "digits, median", "digits, worst", "limits kept", "time"};
 
+std::string of(std::size_t part, std::size_t whole) { return std::to_string(part) + " of " + std::to_string(whole); }
+
+std::string digits(double relative) {
+  const double value = digits_of(relative);
+  return value == kMostDigits ? "all" : text::short_number(std::floor(10.0 * value) / 10.0 + 0.0);  // no -0
+}
+
 // Without an error, all digits are right; without an answer, there is nothing to say.
-std::vector<std::string> cells_of(const Score& score) {
-  const Report& report = score.report;
-  const Distribution& errors = report.overall.absolute;
-  const bool none = answered(report) == 0;
-  const auto error = [&](double value) { return none ? "" : text::short_number(value, 2); };
-  const auto digits = [&](double relative) -> std::string {
-    const double value = digits_of(relative);
-    return none ? "" : value == kMostDigits ? "all" : text::short_number(std::floor(10.0 * value) / 10.0);
-  };
-  const auto of = [](std::size_t part, std::size_t whole) {
-    return std::to_string(part) + " of " + std::to_string(whole);
-  };
-  return {score.program,
-          report.passed() ? "passed" : "FAILED",
-          of(answered(report), report.truth_rows),
-          error(errors.max),
-          error(errors.rms),
-          error(errors.median),
-          error(errors.p90),
-          error(errors.p99),
-          digits(report.overall.relative.median),
-          digits(report.overall.relative.max),
-          of(limits_kept(report), report.verdicts.size()),
-          score.seconds ? text::duration(*score.seconds) : ""};
+std::vector<std::string> cells_of(const Score& score, const Level* level = nullptr) {
+  const Part part = part_of(score.report, level);
+  std::vector<std::string> cells = {score.program, part.limits == part.limits_kept ? "passed" : "FAILED",
+                                    of(part.answered(), part.cases)};
+  if (level && part.answered() == 0) cells[1] = "not asked";
+  const Distribution none, &errors = part.answered() ? part.statistics->absolute : none;
+  for (const double error : {errors.max, errors.rms, errors.median, errors.p90, errors.p99}) {
+    cells.push_back(part.answered() ? text::short_number(error, 2) : "");
+  }
+  for (const double Distribution::*which : {&Distribution::median, &Distribution::max}) {
+    cells.push_back(part.answered() ? digits(part.statistics->relative.*which) : "");
+  }
+  cells.push_back(of(part.limits_kept, part.limits));
+  cells.push_back(score.seconds ? text::duration(*score.seconds) : "");
+  return cells;
+}
+
+// Of a suite, a line for each program: what it answered on each level, with how many digits, and the largest error.
+std::vector<std::vector<std::string>> level_cells(const Scoreboard& board) {
+  std::vector<std::vector<std::string>> rows = {{"program", "result"}};
+  for (const Level& level : board.scores.front().report.levels) rows[0].push_back(level.name);
+  rows[0].emplace_back("time");
+  for (const Score& score : board.scores) {
+    std::vector<std::string>& row = rows.emplace_back();
+    row = {score.program, score.report.passed() ? "passed" : "FAILED"};
+    for (const Level& level : score.report.levels) {
+      const Part part = part_of(score.report, &level);
+      row.push_back(part.answered() == 0
+                        ? "not asked"
+                        : of(part.answered(), part.cases) + ": " + digits(part.statistics->relative.median) +
+                              " digits, worst " + text::short_number(part.statistics->absolute.max, 2));
+    }
+    row.push_back(score.seconds ? text::duration(*score.seconds) : "");
+  }
+  return rows;
 }
 
 // The last column is there only if a time was given.
@@ -63,18 +97,36 @@ std::size_t columns_of(const Scoreboard& board) {
   return kHeadings.size() - (timed ? 0 : 1);
 }
 
-std::string html_table(const Scoreboard& board) {
+// The headings, then a row for each program.
+std::vector<std::vector<std::string>> all_cells(const Scoreboard& board, const Level* level = nullptr) {
+  std::vector<std::vector<std::string>> rows = {{kHeadings.begin(), kHeadings.end()}};
+  for (const Score& score : board.scores) rows.push_back(cells_of(score, level));
+  return rows;
+}
+
+bool is_suite(const Scoreboard& board) { return !board.scores.front().report.levels.empty(); }
+
+// Rows that failed are marked.
+std::string html_table(const Scoreboard& board, std::vector<std::vector<std::string>> rows) {
   using page::HtmlTable;
   const auto kind = [](std::size_t i) { return i < 2 ? HtmlTable::CellKind::kText : HtmlTable::CellKind::kNumber; };
   HtmlTable table(HtmlTable::Shape::kWide);
-  const std::size_t columns = columns_of(board);
-  for (std::size_t i = 0; i < columns; ++i) table.column(kHeadings[i], kind(i));
-  for (const Score& score : board.scores) {
-    table.row(score.report.passed() ? "" : "base");  // marked
-    const std::vector<std::string> cells = cells_of(score);
-    for (std::size_t i = 0; i < columns; ++i) table.cell(page::prose(text::html(cells[i])), kind(i));
+  const std::size_t columns = rows[0].size() - (kHeadings.size() - columns_of(board));
+  for (std::size_t i = 0; i < columns; ++i) table.column(rows[0][i], kind(i));
+  for (std::size_t r = 1; r < rows.size(); ++r) {
+    table.row(rows[r][1] == "FAILED" ? "base" : "");
+    for (std::size_t i = 0; i < columns; ++i) table.cell(page::prose(text::html(rows[r][i])), kind(i));
   }
   return table.text() + '\n';
+}
+
+std::string html_tables(const Scoreboard& board) {
+  if (!is_suite(board)) return html_table(board, all_cells(board));
+  std::string tables = html_table(board, level_cells(board));
+  for (const Level& level : board.scores.front().report.levels) {
+    tables += page::heading("Level: " + text::html(level.name)) + html_table(board, all_cells(board, &level));
+  }
+  return tables;
 }
 
 std::string list_of(const std::vector<std::string>& lines) {
@@ -110,7 +162,10 @@ std::string page_of(const Scoreboard& board) {
   for (const Score& score : board.scores) passed += score.report.passed() ? 1 : 0;
   std::vector<std::string> limits;
   for (const Verdict& verdict : first.verdicts) {
-    if (verdict.criterion != "finite") limits.push_back(name_of(verdict) + " at most " + text::shortest(verdict.limit));
+    if (verdict.criterion == "finite") continue;
+    const std::string limit = (is_suite(board) ? verdict.criterion : name_of(verdict)) + " at most " +
+                              text::shortest(verdict.limit) + (is_suite(board) ? " on each level" : "");
+    if (std::ranges::find(limits, limit) == limits.end()) limits.push_back(limit);
   }
   std::string text = page::page_head("Scoreboard");
   text += "<h1>Scoreboard</h1>\n<p class=\"subtitle\">" + text::counted(board.scores.size(), "program") +
@@ -125,7 +180,7 @@ std::string page_of(const Scoreboard& board) {
        {"judged", "column <code>" + text::html(first.column) + "</code>, " + text::counted(first.truth_rows, "case")},
        {"limits", limits.empty() ? "none but that every value is a finite number"
                                  : text::html(text::enumerate(limits)) + "; every value is a finite number"}});
-  text += page::heading("Results") + html_table(board) +
+  text += page::heading("Results") + html_tables(board) +
           page::paragraph(
               "Errors are absolute: the distance from the true value, or from its bounds where it is not "
               "certified. <i>90 %</i>: nine of ten answers are at most that far off. <i>Digits</i> are "
@@ -144,6 +199,19 @@ std::string page_of(const Scoreboard& board) {
   return text + page::page_end();
 }
 
+ordered_json json_of(const std::string& level, const Part& part) {
+  ordered_json json = {{"level", level},
+                       {"cases", part.cases},
+                       {"answered", part.answered()},
+                       {"limits", part.limits},
+                       {"limits_kept", part.limits_kept}};
+  if (part.answered() == 0) return json;
+  json["errors"] = json_of(part.statistics->absolute);
+  json["digits"] = {{"median", digits_of(part.statistics->relative.median)},
+                    {"worst", digits_of(part.statistics->relative.max)}};
+  return json;
+}
+
 std::string json_text(const Scoreboard& board) {
   const Report& first = board.scores.front().report;
   ordered_json json;
@@ -152,16 +220,18 @@ std::string json_text(const Scoreboard& board) {
   json["programs"] = ordered_json::array();
   for (const Score& score : board.scores) {
     const Report& report = score.report;
+    const Part part = part_of(report);
     ordered_json one = {
         {"name", score.program},
         {"passed", report.passed()},
         {"cases", report.truth_rows},
-        {"answered", answered(report)},
+        {"answered", part.answered()},
         {"errors", json_of(report.overall.absolute)},
         {"digits",
          {{"median", digits_of(report.overall.relative.median)}, {"worst", digits_of(report.overall.relative.max)}}},
-        {"limits", report.verdicts.size()},
-        {"limits_kept", limits_kept(report)}};
+        {"limits", part.limits},
+        {"limits_kept", part.limits_kept}};
+    for (const Level& level : report.levels) one["levels"].push_back(json_of(level.name, part_of(report, &level)));
     if (score.seconds) one["seconds"] = json_number(*score.seconds);
     one["report"] = json_of(report);
     json["programs"].push_back(std::move(one));
@@ -196,10 +266,10 @@ Scoreboard scoreboard(const std::filesystem::path& truth, std::span<const std::f
 
 std::string markdown(const Scoreboard& board) {
   const kernel::StandardArithmetic arithmetic;
-  const std::size_t columns = columns_of(board);
-  std::vector<std::vector<std::string>> rows = {{kHeadings.begin(), kHeadings.end()}, {}};
+  std::vector<std::vector<std::string>> rows = is_suite(board) ? level_cells(board) : all_cells(board);
+  const std::size_t columns = rows[0].size() - (kHeadings.size() - columns_of(board));
+  rows.emplace(rows.begin() + 1);
   for (std::size_t i = 0; i < columns; ++i) rows[1].emplace_back(i < 2 ? "---" : "--:");
-  for (const Score& score : board.scores) rows.push_back(cells_of(score));
   std::string text;
   for (std::vector<std::string>& row : rows) {
     text += '|';

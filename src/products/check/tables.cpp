@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <sstream>
 
 #include "exactff/radiosity.h"
@@ -372,6 +373,58 @@ Truth read_truth(const std::filesystem::path& path, const std::string& column) {
   return truth;
 }
 
+// --- Suites ---
+
+bool is_suite(const std::filesystem::path& path) { return std::filesystem::is_regular_file(path / "questions.csv"); }
+
+Truth read_suite(const std::filesystem::path& folder) {
+  constexpr std::array kQuantities = {std::pair{"form factor", "exact"}, std::pair{"sphere", "sphere"},
+                                      std::pair{"solid angle", "solid_angle"}, std::pair{"overcast sky", "overcast"},
+                                      std::pair{"view factor", "factor"}};
+  const kernel::StandardArithmetic arithmetic;
+  table::CsvReader questions(folder / "questions.csv", "the questions of a suite");
+  std::array<std::size_t, 6> columns{};
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    constexpr std::array kNames = {"question", "level", "scene", "quantity", "from", "to"};
+    columns[i] = questions.needed_column({kNames.at(i)}, "it is a part of every question", "restore the file");
+  }
+  Truth suite;
+  suite.file = folder.string();
+  suite.kind = kSuite;
+  suite.column = "value";
+  suite.keys = {"question", "level"};
+  std::map<std::pair<std::string, std::string>, Truth> tables;  // by file and column
+  NameList levels;
+  for (const bool has_columns = questions.is_sound(); has_columns && questions.next();) {
+    const auto field = [&](std::size_t i) -> const std::string& { return questions.field(columns.at(i)); };
+    const auto quantity =
+        std::ranges::find(kQuantities, field(3), [](const auto& one) { return std::string(one.first); });
+    if (quantity == kQuantities.end()) {
+      questions.complain("unknown quantity " + text::in_quotes(field(3)), "it says which column holds the answer");
+      continue;
+    }
+    const std::string& receiver = field(4).empty() ? field(0) : field(4);
+    const std::string file = field(2) + (field(4).empty() ? ".points.csv" : ".pairs.csv");
+    auto& table = tables[{file, quantity->second}];
+    if (table.rows.empty()) table = read_truth(folder / "answers" / file, quantity->second);
+    const auto row = std::ranges::find_if(
+        table.rows, [&](const TruthRow& one) { return one.receiver == receiver && table.source_of(one) == field(5); });
+    if (row == table.rows.end()) {
+      questions.complain("its answer is not in answers/" + file, "a question without an answer cannot be judged");
+      continue;
+    }
+    TruthRow& question = suite.rows.emplace_back(*row);
+    question.receiver = field(0);
+    question.line = static_cast<std::uint32_t>(questions.line());
+    question.source = levels.number_of(field(1));
+    question.on = 0;
+  }
+  questions.throw_if_any();
+  suite.sources = levels.take();
+  suite.faces = {""};
+  return suite;
+}
+
 // --- Candidates ---
 
 namespace {
@@ -460,7 +513,7 @@ Candidate read_candidate(const std::filesystem::path& path, const Truth& truth, 
                          MatchBy by) {
   const kernel::StandardArithmetic arithmetic;
   const bool has_two_keys = !truth.keys[1].empty() && truth.keys[1].find(Input::kBetweenKeys) == std::string::npos;
-  const bool like_matrix = !truth.kind.empty() && truth.keys[0] != "receiver" && has_two_keys;
+  const bool like_matrix = !truth.kind.empty() && truth.kind != kSuite && truth.keys[0] != "receiver" && has_two_keys;
   if (by == MatchBy::kReceiver && like_matrix) {
     matrix::Order order = order_of(truth);
     if (!columns.receiver.empty()) order.keys[0] = columns.receiver;

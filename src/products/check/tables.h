@@ -16,6 +16,8 @@
 
 namespace exactff::check {
 
+inline constexpr std::string_view kSuite = "suite";  // the kind of a truth of questions
+
 // The receivers of the truth with their areas, and its sources without the further ones, in their order.
 [[nodiscard]] matrix::Order order_of(const Truth& truth);
 

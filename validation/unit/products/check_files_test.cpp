@@ -332,6 +332,31 @@ TEST_F(CheckOfTables, AScoreboardHasARowForEachProgram) {
   EXPECT_HOLDS(complaint([&] { check::write(board, directory_.path() / "other"); }), "which exactff did not write");
 }
 
+TEST_F(CheckOfTables, ASuiteIsGradedOnEachLevel) {
+  const std::filesystem::path suite = EXACTFF_DATA_DIR "/suite";
+  const std::vector<std::filesystem::path> files = {
+      directory_.write("some.csv", "question,value\nplates-1,0.003162056838757602\nplates-6,0.42\ncover-1,0\n"),
+      directory_.write("one.csv", "question,value\ntable-1,nan\n")};
+  const Scoreboard board = scoreboard(suite, files, {.criteria = {.max_abs = 1e-3}});
+  const Report& some = board.scores[0].report;
+  ASSERT_EQ(some.levels.size(), 4U);
+  EXPECT_EQ(some.levels[3].name, "hard");
+  EXPECT_EQ(some.sources, (std::vector<std::string>{"plain", "hard"}));
+  EXPECT_FALSE(verdict_on(some, "max-abs", "plain").passed);
+  EXPECT_TRUE(verdict_on(some, "max-abs", "hard").passed);
+  const std::string lines = markdown(board);
+  EXPECT_HOLDS(lines, "| some    | FAILED | 2 of 70: all digits, worst 0.0047 | not asked | not asked | 1 of 38: all");
+  const auto folder = directory_.path() / "board";
+  check::write(board, folder);
+  const auto json = nlohmann::json::parse(validation::text_of(folder / "scoreboard.json"));
+  EXPECT_EQ(json["programs"][0]["levels"][0]["answered"], 2);
+  EXPECT_EQ(json["programs"][0]["levels"][3]["limits_kept"], 1);
+  EXPECT_EQ(json["programs"][1]["levels"][1]["answered"], 0);
+  EXPECT_HOLDS(validation::text_of(folder / "index.html"), "Level: crowded");
+  const auto unknown = directory_.write("unknown.csv", "question,value\nplates-0,1\n");
+  EXPECT_HOLDS(complaint([&] { (void)compare(suite, unknown); }), "the truth has no question 'plates-0'");
+}
+
 // A table of a study names receivers; it is no matrix, whose candidates may be nothing but numbers.
 TEST_F(CheckOfTables, ValuesOfAStudyAreMatchedByReceiver) {
   table::Rows rows("compare exact", {},

@@ -214,7 +214,7 @@ def scoreboard(truth: Path, candidates: Sequence[Path], *, folder: Optional[Path
                relative_floor: float = 0.0, worst: int = 10, truth_column: str = "", value_column: str = "",
                match: Literal["receiver", "position"] = "receiver", tolerance: float = 0.0,
                partial: bool = False) -> Scoreboard:
-    """Compares the files of several programs with one truth: a row for each program, named by its file.
+    """Compares the files of several programs with one truth, or with the folder of a suite: a row for each program.
 
     folder : where index.html, scoreboard.json and junit.xml are written; it appears complete or not at all
     seconds : the times of programs by name, ``{"mine": 3.2}``
