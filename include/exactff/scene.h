@@ -212,7 +212,7 @@ enum class PatchMode {
   kGroups,  // a group of the file
   kFaces,   // every face, NAME:k
   kPlanes,  // neighbours in exactly one plane, with their fronts on one side
-  kSmooth,  // neighbours whose fronts differ by less than an angle; decided exactly, by the double nearest its cosine
+  kSmooth,  // neighbours whose fronts differ by less than an angle; decided exactly
   kParts,   // neighbours
 };
 
@@ -263,7 +263,7 @@ class SceneBuilder {
 
 // A name for the faces that a selector finds, of those with area. A selector is one of
 //   box:X0,Y0,Z0,X1,Y1,Z1   faces with all corners in the box
-//   normal:X,Y,Z[:DEGREES]  faces whose front is within the angle (default 5) of the direction; by exact signs
+//   normal:X,Y,Z[:DEGREES]  faces whose front is within the angle (default 5) of the direction, or at it; exact
 //   plane:A,B,C,D[:DISTANCE]  faces with all corners at most that far (default 0: exactly) from A x + B y + C z = D
 //   NAME:1-20,25            faces of a patch by number
 //   NAME                    what Scene::select_all() finds

@@ -89,10 +89,10 @@ IsWanted by_normal(const Scene& scene, std::string_view selector) {
   const kernel::ExactVec3 direction = kernel::exact_vector({numbers.list[0], numbers.list[1], numbers.list[2]}).v;
   if (is_zero(direction)) refuse_selector(selector, "0,0,0 is no direction");
   if (!(degrees >= 0.0 && degrees <= 180.0)) refuse_selector(selector, "an angle is from 0 to 180 degrees");
-  return [&scene, direction, above = AngleBelow(180.0 - degrees)](FaceId id) {
-    const auto pieces = scene.pieces_of(id);
-    const kernel::ExactVec3 back = direction * kernel::Integer(-1);
-    return std::ranges::none_of(pieces, [&](const Piece& p) { return above.holds(exact_normal(scene, p), back); });
+  return [&scene, direction, degrees](FaceId id) {
+    return std::ranges::all_of(scene.pieces_of(id), [&](const Piece& piece) {
+      return compare_angle(degrees, exact_normal(scene, piece), direction) >= 0;
+    });
   };
 }
 

@@ -84,6 +84,9 @@ TEST(PatchesFromGeometry, DecideAnglesExactly) {
   EXPECT_EQ(count(folded(4), "smooth:53"), 2U);
   EXPECT_EQ(count(folded(3), "smooth:45"), 2U);
   EXPECT_EQ(count(folded(0x1.7ffffffffffffp+1), "smooth:45.00000000000001"), 1U);
+  EXPECT_EQ(count(folded(3), "smooth:45.00000000000001"), 1U);
+  EXPECT_EQ(count(folded(0x1.8000000000001p+1), "smooth:45"), 2U);
+  EXPECT_EQ(count(folded(0x1.7ffffffffffffp+1), "smooth:45"), 1U);
   EXPECT_EQ(count(folded(0), "smooth:0"), 2U);
 }
 
@@ -126,7 +129,13 @@ TEST(FaceNames, AreThoseThatSelectorsFind) {
   EXPECT_EQ(faces("box:0,0,0,1,2,3"), 12U);
   EXPECT_EQ(faces("box:7,2,3,-1,-1,3"), 4U);
   EXPECT_EQ(faces("normal:0,0,1"), 4U);
-  EXPECT_EQ(faces("normal:0,1,1:45.001"), 8U);
+  EXPECT_EQ(faces("normal:0,1,1:45"), 8U);
+  EXPECT_THROW((void)faces("normal:0,1,1:44.99999999999999"), InputError);
+  EXPECT_EQ(faces("normal:0,-1,-1:135"), 24U);
+  EXPECT_EQ(faces("normal:0,-1,-1:134.99999999999997"), 16U);
+  EXPECT_EQ(faces("normal:0,0,1:90"), 20U);
+  EXPECT_EQ(faces("normal:0,0,1:0"), 4U);
+  EXPECT_EQ(faces("normal:0,0,1:180"), 24U);
   EXPECT_EQ(faces("normal:0,1,1:46 & box:0,0,0,1,2,3"), 4U);
   EXPECT_EQ(faces("plane:0,0,2,6"), 4U);
   EXPECT_EQ(faces("plane:0,0,1,3.5:0.5"), 4U);
