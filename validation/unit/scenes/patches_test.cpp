@@ -88,6 +88,7 @@ TEST(PatchesFromGeometry, DecideAnglesExactly) {
   EXPECT_EQ(count(folded(0x1.8000000000001p+1), "smooth:45"), 2U);
   EXPECT_EQ(count(folded(0x1.7ffffffffffffp+1), "smooth:45"), 1U);
   EXPECT_EQ(count(folded(0), "smooth:0"), 2U);
+  EXPECT_EQ(count(folded(0), "smooth:4.9e-324"), 1U);
 }
 
 TEST(PatchesFromGeometry, HaveNamesThatNoOrderChanges) {
@@ -146,6 +147,19 @@ TEST(FaceNames, AreThoseThatSelectorsFind) {
   EXPECT_EQ(both.faces_of(both.select("top")).size(), 2U);
   EXPECT_EQ(both.faces_of(both.select("left")).size(), 12U);
   EXPECT_EQ(names_of(both), (std::vector<std::string>{"things", "top", "left"}));
+}
+
+TEST(FaceNames, OfPatchesThatKeepFacesAreTold) {
+  const Scene scene = generate::build(boxes({{{0, 0, 0}, {1, 2, 3}}}), {}, scene_options("faces"));
+  const auto warnings = [&](const std::string& text) {
+    const Scene named = with_names(scene, std::vector<FaceName>{face_name(text)});
+    return named.warnings().empty() ? std::string() : named.warnings().back().message();
+  };
+  EXPECT_TRUE(holds(warnings("things:1=things:2"),
+                    "the name 'things:1' is that of a patch of 1 face, and 1 face was added to it (faces of one name"));
+  EXPECT_TRUE(holds(warnings("things:1=normal:0,0,1"), "2 faces were added"));
+  EXPECT_EQ(warnings("things:1=things:1"), "");
+  EXPECT_EQ(warnings("new=things:1"), "");
 }
 
 TEST(FaceNames, RefuseWhatCannotBeRead) {

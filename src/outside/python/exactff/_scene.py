@@ -240,8 +240,12 @@ class Scene:
         """The same scene in which the faces that a selector finds are a patch of that name: ``{"left fin":
         "box:0,0,0,1,20,30"}``. Selectors: ``box:X0,Y0,Z0,X1,Y1,Z1``, ``normal:X,Y,Z[:DEGREES]``,
         ``plane:A,B,C,D[:DISTANCE]``, ``PATCH:1-20,25``, ``PATCH``, or several with " & " between. They are about this
-        scene; of two that find a face, the later one counts. Raises InputError if one finds nothing."""
-        return self._changed(lambda _: self._scene.with_names(list(names.items())), ("all",))
+        scene; of two that find a face, the later one counts. Warns where a patch has this name and keeps faces. Raises
+        InputError if one finds nothing."""
+        made = self._changed(lambda _: self._scene.with_names(list(names.items())), ("all",))
+        for warning in made._scene.warnings()[len(self._scene.warnings()):]:
+            warn(warning)
+        return made
 
     def gap(self) -> Optional[Gap]:
         """How far apart corners are that should be one, so that `welded` with this length closes most; None if no length
