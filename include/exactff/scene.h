@@ -331,7 +331,7 @@ struct WeldedScene {
 
 // The smallest length, to about two digits, with which welded() leaves the fewest open edges (Scene::open_edge_count).
 // Tried are lengths up to 1/256 of the scene's size and 1/16 of the median open edge that make no face vanish but
-// slivers. What exact T-junctions leave open, as walls that meet a floor's edge in parts do, is no gap.
+// slivers. What exact T-junctions leave open is no gap; nor is what parts free sheets, unless it is a rounding.
 struct Gap {
   double length = 0.0;
   std::size_t open_edges_before = 0, open_edges = 0;
