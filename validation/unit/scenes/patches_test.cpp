@@ -162,6 +162,22 @@ TEST(FaceNames, OfPatchesThatKeepFacesAreTold) {
   EXPECT_EQ(warnings("new=things:1"), "");
 }
 
+TEST(PatchSummary, DoesNotDependOnTheOrderOfFaces) {
+  for (std::uint64_t s = 0; s < scaled_count(20); ++s) {
+    Random random(seed_of(s));
+    PlainScene scene;
+    for (int k = 0; k < 30; ++k) {
+      const Vec3 a{random.unit(), random.unit(), random.unit()};
+      scene.add_ring(scene.patch("soup"), {a, {a.x + 1, a.y, random.unit()}, {a.x, a.y + random.unit(), a.z + 0.1}});
+    }
+    const PatchSummary one = summarise(generate::build(scene), PatchId{0});
+    std::ranges::reverse(scene.patch("soup").faces);
+    const PatchSummary other = summarise(generate::build(scene), PatchId{0});
+    EXPECT_EQ(one.centre, other.centre);
+    EXPECT_EQ(one.area, other.area);
+  }
+}
+
 TEST(FaceNames, RefuseWhatCannotBeRead) {
   const Scene scene = generate::build(boxes({{{0, 0, 0}, {1, 2, 3}}}));
   const auto words = [&](const std::string& text) {
