@@ -69,10 +69,7 @@ struct ConvertArguments {
 // What the input is decides what may be written.
 int convert_table(const ConvertArguments& args) {
   const std::filesystem::path out = args.out;
-  const std::string extension = out.extension().string();
-  if (extension != ".csv" && extension != ".npz" && extension != ".jsonl") {
-    text::refuse(out, "cannot hold a table", args.scene.path + " is a table", "name a file .csv, .npz or .jsonl");
-  }
+  require_table_file(out);
   if (args.triangulate || args.weld || args.scene.divide || !args.encoding.empty()) {
     text::refuse(std::filesystem::path(args.scene.path), "is a table, and flags for scenes are given",
                  "a table has no faces", "leave them out");
