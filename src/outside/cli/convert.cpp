@@ -93,12 +93,12 @@ std::string listed_faces(const Scene& scene, const std::vector<FaceId>& faces) {
 
 void print_welding(const Scene& before, const WeldedScene& welded, double length) {
   const auto note = [](const std::string& text) { std::cerr << "note: " << text << '\n'; };
-  note("welded within " + text::shortest(length) + ": " + text::counted(welded.corners_before, "corner") + " became " +
-       std::to_string(welded.corners) +
+  note("welded within " + text::shortest(length) + ": " + text::counted(welded.corners_before, "corner") +
+       (welded.corners == welded.corners_before ? ", each still apart" : " became " + std::to_string(welded.corners)) +
        (welded.largest_move == 0.0 ? "; none moved"
                                    : "; none moved by more than " + text::short_number(welded.largest_move)));
   if (welded.junctions > 0)
-    note("faces got " + text::counted(welded.junctions, "corner") + " of others that lie on their open edges");
+    note(text::counted(welded.junctions, "corner") + " added to faces on whose open edges they lie");
   if (!welded.vanished.empty())
     note(text::counted(welded.vanished.size(), "face") + " vanished: " + listed_faces(before, welded.vanished));
   const std::size_t open = welded.scene.open_edge_count();
