@@ -212,7 +212,7 @@ enum class PatchMode {
   kGroups,  // a group of the file
   kFaces,   // every face, NAME:k
   kPlanes,  // neighbours in exactly one plane, with their fronts on one side
-  kSmooth,  // neighbours whose fronts differ by less than an angle; decided exactly, by the double nearest its cosine
+  kSmooth,  // neighbours whose fronts differ by less than an angle; decided exactly
   kParts,   // neighbours
 };
 
@@ -263,7 +263,7 @@ class SceneBuilder {
 
 // A name for the faces that a selector finds, of those with area. A selector is one of
 //   box:X0,Y0,Z0,X1,Y1,Z1   faces with all corners in the box
-//   normal:X,Y,Z[:DEGREES]  faces whose front is within the angle (default 5) of the direction; by exact signs
+//   normal:X,Y,Z[:DEGREES]  faces whose front is within the angle (default 5) of the direction, or at it; exact
 //   plane:A,B,C,D[:DISTANCE]  faces with all corners at most that far (default 0: exactly) from A x + B y + C z = D
 //   NAME:1-20,25            faces of a patch by number
 //   NAME                    what Scene::select_all() finds
@@ -275,7 +275,7 @@ struct FaceName {
 [[nodiscard]] FaceName face_name(std::string_view text);  // "NAME=SELECTOR"; throws InputError for another text
 // The same scene in which these faces are patches of these names, new or existing. All selectors are about the given
 // scene; of two that find a face, the later one counts. Faces are numbered anew; patches that are left without faces
-// vanish. Throws InputError for a selector that cannot be read or finds nothing.
+// vanish. A warning tells of merged patches. Throws InputError for a selector that cannot be read or finds nothing.
 [[nodiscard]] Scene with_names(const Scene& scene, std::span<const FaceName> names);
 // The same scene with other patches (PatchMode), each group of which is a patch of the given scene.
 [[nodiscard]] Scene with_patches(const Scene& scene, const SceneOptions& patches);
@@ -331,7 +331,7 @@ struct WeldedScene {
 
 // The smallest length, to about two digits, with which welded() leaves the fewest open edges (Scene::open_edge_count).
 // Tried are lengths up to 1/256 of the scene's size and 1/16 of the median open edge that make no face vanish but
-// slivers. What exact T-junctions leave open, as walls that meet a floor's edge in parts do, is no gap.
+// slivers. What exact T-junctions leave open is no gap; nor is what parts free sheets, unless it is a rounding.
 struct Gap {
   double length = 0.0;
   std::size_t open_edges_before = 0, open_edges = 0;

@@ -38,7 +38,7 @@ if(EXACTFF_HAS_PYTHON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
       "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), python3-numpy")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-tqdm, python3-matplotlib")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-meshio, python3-tqdm, python3-matplotlib")
   set(CPACK_DEBIAN_PYTHON_DESCRIPTION "${about}\n.\nThis package holds the module for Python.")
 endif()
 if(TARGET exactff_mpi)

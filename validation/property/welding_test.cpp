@@ -156,6 +156,26 @@ TEST(Welding, PutsCornersIntoOpenEdgesThatTheyTouch) {
   EXPECT_LT(gap(scene(1e-9))->length, 2.1e-9);
 }
 
+TEST(Welding, IsNotAdvisedForSheetsThatLieNearEachOther) {
+  const auto sheet = [](double x, double z) {
+    return std::vector<Vec3>{{x, 0, z}, {x + 1, 0, z}, {x + 1, 1, z}, {x, 1, z}};
+  };
+  const double d = 0x1p-9;
+  EXPECT_FALSE(gap(scene_of_rings({{"a", sheet(0, 0)}, {"b", sheet(1 + d, 0)}, {"c", sheet(2 + 2 * d, 0)}})));
+  EXPECT_FALSE(gap(scene_of_rings({{"a", sheet(0, 0)}, {"b", sheet(0, d)}, {"c", sheet(0, 2 * d)}})));
+  const std::vector<Vec3> upright{{-d, 0, 0}, {-d, 1, 0}, {-d, 1, 1}, {-d, 0, 1}};
+  EXPECT_FALSE(gap(scene_of_rings({{"a", sheet(0, 0)}, {"b", upright}})));
+  // A room closes beside them, within its own distance.
+  Random random(seed_of(0));
+  PlainScene room = with_moved_corners(random_plain_room(random), 1e-5, 7);
+  room.add_ring(room.patch("tile"), sheet(50, 0));
+  room.add_ring(room.patch("tile"), sheet(51 + d, 0));
+  const std::optional<Gap> found = gap(generate::build(room));
+  ASSERT_TRUE(found);
+  EXPECT_LT(found->length, 1e-4);
+  EXPECT_EQ(found->open_edges, 8U);
+}
+
 TEST(Welding, TellsSheetsAndMergesNone) {
   const auto plates = [](double size, double z) {
     return scene_of_rings({{"floor", {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}},

@@ -277,7 +277,7 @@ def test_a_mesh_of_meshio_keeps_the_names_of_its_groups(tmp_path):
     with pytest.raises(exactff.InputError, match="is a Gmsh file"):
         exactff.Scene.read(tmp_path / "room.msh")
     page = (SCENES.parent / "README.md").read_text()
-    code = next(part for part in page.split("```python\n")[1:] if "import exactff, meshio" in part).split("```")[0]
+    code = next(part for part in page.split("```python\n")[1:] if "from_meshio" in part).split("```")[0]
     exec(code.replace("room.", f"{tmp_path}/room."), {})
     scene = exactff.Scene.read(tmp_path / "room.obj")
     assert {patch.name: len(patch.faces) for patch in scene.patches} == {"floor": 1, "a wall": 2}

@@ -52,10 +52,17 @@ Ball pi(long bits) {
   return result;
 }
 
-double cosine_of_degrees(double degrees) {
-  constexpr long kBits = 256;
-  const Ball turns = ball_of<arb_cos_pi>(to_ball(degrees, kBits) / to_ball(180.0, kBits));
-  return nearest_to_midpoint(turns);
+// The square of the cosine of a rational number of degrees is rational at multiples of 30 and 45 alone (Niven,
+// "Irrational Numbers", 1956, corollary 3.12), so more bits decide all others.
+int compare_with_squared_cosine(const Integer& a, const Integer& b, double degrees) {
+  for (const auto& [angle, fourths] : {std::pair(0.0, 4), {30.0, 3}, {45.0, 2}, {60.0, 1}, {90.0, 0}}) {
+    if (degrees == angle || degrees == 180.0 - angle) return sign(Integer(4 * a - fourths * b));
+  }
+  for (long bits = 64;; bits *= 2) {
+    const Ball cosine = ball_of<arb_cos_pi>(to_ball(degrees, bits) / to_ball(180.0, bits));
+    const Ball difference = to_ball(a, bits) - cosine * cosine * to_ball(b, bits);
+    if (!arb_contains_zero(difference.get())) return arb_is_positive(difference.get()) != 0 ? 1 : -1;
+  }
 }
 
 Ball with_bits(Ball ball, long bits) {

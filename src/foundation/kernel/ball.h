@@ -97,8 +97,8 @@ Ball to_ball(const Rational& value, long bits);
 // Exactly the number.
 Ball to_ball(double value, long bits);
 Ball pi(long bits);
-// The double nearest to the cosine of an angle in degrees.
-double cosine_of_degrees(double degrees);
+// The sign of a - b cos(degrees)^2. Exact, for positive b and from 0 to 180 degrees.
+int compare_with_squared_cosine(const Integer& a, const Integer& b, double degrees);
 // The same ball with another number of bits.
 Ball with_bits(Ball ball, long bits);
 // Contains every number within `error` of hi + lo; the error may be infinite.

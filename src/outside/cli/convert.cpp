@@ -69,10 +69,7 @@ struct ConvertArguments {
 // What the input is decides what may be written.
 int convert_table(const ConvertArguments& args) {
   const std::filesystem::path out = args.out;
-  const std::string extension = out.extension().string();
-  if (extension != ".csv" && extension != ".npz" && extension != ".jsonl") {
-    text::refuse(out, "cannot hold a table", args.scene.path + " is a table", "name a file .csv, .npz or .jsonl");
-  }
+  require_table_file(out);
   if (args.triangulate || args.weld || args.scene.divide || !args.encoding.empty()) {
     text::refuse(std::filesystem::path(args.scene.path), "is a table, and flags for scenes are given",
                  "a table has no faces", "leave them out");
@@ -96,12 +93,12 @@ std::string listed_faces(const Scene& scene, const std::vector<FaceId>& faces) {
 
 void print_welding(const Scene& before, const WeldedScene& welded, double length) {
   const auto note = [](const std::string& text) { std::cerr << "note: " << text << '\n'; };
-  note("welded within " + text::shortest(length) + ": " + text::counted(welded.corners_before, "corner") + " became " +
-       std::to_string(welded.corners) +
+  note("welded within " + text::shortest(length) + ": " + text::counted(welded.corners_before, "corner") +
+       (welded.corners == welded.corners_before ? ", each still apart" : " became " + std::to_string(welded.corners)) +
        (welded.largest_move == 0.0 ? "; none moved"
                                    : "; none moved by more than " + text::short_number(welded.largest_move)));
   if (welded.junctions > 0)
-    note("faces got " + text::counted(welded.junctions, "corner") + " of others that lie on their open edges");
+    note(text::counted(welded.junctions, "corner") + " added to faces on whose open edges they lie");
   if (!welded.vanished.empty())
     note(text::counted(welded.vanished.size(), "face") + " vanished: " + listed_faces(before, welded.vanished));
   const std::size_t open = welded.scene.open_edge_count();

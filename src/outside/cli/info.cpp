@@ -153,7 +153,12 @@ void print_gap(const Scene& scene, const flags::SceneArguments& arguments) {
   std::cout << "gap: corners that should be one are up to " << six_digits(found->length) << " apart; exactff convert "
             << text::shell_word(arguments.path) << flags::command_words(*arguments.command, {"--json"})
             << " OUT.obj --weld " << text::shortest(found->length) << " leaves " << found->open_edges << " of "
-            << found->open_edges_before << " open edges\n";
+            << found->open_edges_before << " open edges";
+  if (const std::size_t bent = faces_of_shape(scene, FaceShape::kTriangulated).size(); bent > 0) {
+    std::cout << ", and " << faces_of_shape(welded(scene, found->length).scene, FaceShape::kTriangulated).size()
+              << " of " << counted(bent, "bent face", "bent faces");
+  }
+  std::cout << '\n';
 }
 
 void print_contacts(const Scene& scene) {

@@ -141,7 +141,11 @@ int end_of_parsing(const CLI::App& app, const CLI::ParseError& error) {
   if (exactff::cli::launched_rank() > 0) return 0;  // under mpirun only rank 0 prints it
   std::ostringstream out, err;
   const bool done = app.exit(error, out, err) == 0;  // --help, --version
-  std::cerr << exactff::text::printable(err.str(), "\n");
+  std::string words = err.str();
+  constexpr std::string_view kExcludes = " excludes ";
+  if (const std::size_t at = words.find(kExcludes); error.get_name() == "ExcludesError" && at != std::string::npos)
+    words.replace(at, kExcludes.size(), " cannot be given with ");
+  std::cerr << exactff::text::printable(words, "\n");
   std::cout << out.str();
   return done ? 0 : exactff::cli::kBadInput;
 }

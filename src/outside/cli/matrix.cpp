@@ -247,6 +247,7 @@ void check_shard_and_resume(const MatrixArguments& args) {
 
 void check_outputs(const MatrixArguments& args) {
   check_shard_and_resume(args);
+  if (!args.exchange.empty()) require_table_file(args.exchange);
   if (args.keeps_work()) {
     jobs::require_free(args.csv, args.existing());
   } else if (!args.csv.empty()) {

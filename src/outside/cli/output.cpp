@@ -67,6 +67,14 @@ void require_free_file(const fs::path& path, bool force) {
                     "name another file, or replace it with --force"});
 }
 
+void require_table_file(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  std::error_code ignored;
+  if (extension == ".csv" || extension == ".npz" || extension == ".jsonl" || fs::is_other(path, ignored)) return;
+  throw InputError({path.string(), 0, "cannot hold a table", "the extension says how it is written",
+                    "name a file .csv, .npz or .jsonl"});
+}
+
 namespace {
 
 // Null for a pipe or device, which has been written directly.

@@ -38,6 +38,8 @@ void write_scene_files(const SceneFiles& scene);
 
 // Throws InputError if the file exists, unless it may be replaced. Pipes and devices may always be written to.
 void require_free_file(const std::filesystem::path& path, bool force);
+// Throws InputError for another extension than .csv, .npz and .jsonl, unless it is a pipe or a device.
+void require_table_file(const std::filesystem::path& path);
 
 // Throws InputError if the printed text could not be written, for example because the disk is full.
 void check_output(std::ostream& out);

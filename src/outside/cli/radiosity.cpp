@@ -300,8 +300,13 @@ void check_outputs(const RadiosityArguments& args) {
 void require_light(const RadiosityArguments& args, const Scene& scene, const std::vector<Selection>& patches) {
   const bool any_emits = std::ranges::any_of(patches, [&](const Selection& patch) { return emits(scene, patch); });
   if (any_emits) return;
-  text::refuse(std::filesystem::path(args.scene.path), "no patch emits light", "every radiosity would be 0",
-               "give some material a Ke; for view factors alone, use exactff matrix");
+  const auto says_nothing = [](const Material& m) { return m.reflectance == Rgb{1, 1, 1} && m.radiosity == Rgb{}; };
+  text::refuse(
+      std::filesystem::path(args.scene.path), "no patch emits light", "every radiosity would be 0",
+      std::ranges::all_of(scene.materials(), says_nothing)
+          ? "the scene has no materials, so Kd is 1 everywhere: exactff convert writes an OBJ file with an MTL "
+            "file, in which each material gets its Kd and some a Ke; for view factors alone, use exactff matrix"
+          : "give some material a Ke; for view factors alone, use exactff matrix");
 }
 
 void warn_of_no_bound(const Solution& solution) {

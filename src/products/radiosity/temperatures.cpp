@@ -158,6 +158,14 @@ Temperatures temperatures(const Scene& scene, const matrix::Matrix& given, const
     negative.push_back(flux.value < 0.0 ? BoundedValue{-flux.value, -flux.upper, -flux.lower} : none);
     any_negative = any_negative || flux.value < 0.0;
   }
+  constexpr double kMuchHeat = 1e300;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (positive[i].upper <= kMuchHeat && negative[i].upper <= kMuchHeat) continue;
+    text::refuse(name_of(scene, result.patches[i]) + " gives off more than " + text::short_number(kMuchHeat) +
+                     " W per unit of area",
+                 "doubles end near 1.8e308, below sums of such heats",
+                 "check its T or Q, and those of (back) and (open)");
+  }
   system.emissions.assign(n, 0.0);
   std::vector<BoundedValue> h = arriving(system, positive);
   if (!h.empty() && any_negative) {

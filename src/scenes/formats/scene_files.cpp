@@ -31,22 +31,20 @@ constexpr std::size_t kLookedAt = std::size_t{1} << 16;  // bytes of a file that
 constexpr std::string_view kAssimp = "assimp export IN OUT.obj, or Blender; both keep the names of objects";
 constexpr std::string_view kBlender = "Blender: export Wavefront (.obj), which keeps the names of objects";
 constexpr std::string_view kMeshio =
-    "meshio convert IN OUT.ply; names are lost unless a script gives them to exactff.Scene (data/README.md shows one)";
+    "python3 -m exactff convert IN OUT.obj, which keeps the names of groups (it needs exactff for Python and meshio)";
 constexpr std::string_view kScript =
     "a script that gives exactff.Scene its polygons and their names (data/README.md shows one)";
 constexpr std::string_view kCad = "FreeCAD, or gmsh IN -2 -o OUT.stl";
 constexpr std::string_view kUnpack = "its unpacker";
 
-constexpr ForeignKind kGmsh{
-    "a Gmsh file",
-    "gmsh IN -save -setnumber Mesh.StlOneSolidPerSurface 2 -o OUT.stl, which keeps the names of "
-    "physical groups"};
+constexpr ForeignKind kGmsh{"a Gmsh file", kMeshio};
 constexpr ForeignKind kFluent{"a Fluent mesh", kMeshio};
 constexpr ForeignKind kMsh{"a Gmsh or Fluent mesh (.msh)", kMeshio};
 constexpr ForeignKind kAbaqus{"an Abaqus or CalculiX file", kMeshio};
 constexpr ForeignKind kInp{"an Abaqus, CalculiX or AVS file (.inp)", kMeshio};
 constexpr ForeignKind kNastran{"a Nastran file", kMeshio};
-constexpr ForeignKind kVtk{"a VTK file", "ParaView or meshio: save as PLY, without names"};
+constexpr ForeignKind kVtk{"a VTK file", kMeshio};
+constexpr ForeignKind kVtp{"a VTK file of polygons", "ParaView: save as PLY, without names"};
 constexpr ForeignKind kGltf{"a glTF file", kAssimp};
 constexpr ForeignKind kCollada{"a Collada file", kAssimp};
 constexpr ForeignKind kFbx{"an FBX file", kAssimp};
@@ -135,7 +133,7 @@ constexpr std::array<Extension, 37> kExtensions = {{
     {".msh", kMsh},
     {".vtk", kVtk},
     {".vtu", kVtk},
-    {".vtp", kVtk},
+    {".vtp", kVtp},
     {".gltf", kGltf},
     {".glb", kGltf},
     {".pbrt", kPbrt},
@@ -169,7 +167,7 @@ bool contains(std::string_view bytes, std::string_view part) { return bytes.find
 ForeignKind step_kind(std::string_view head) { return contains(head, "IFC") ? kIfc : kStep; }
 
 ForeignKind markup_kind(std::string_view head) {
-  if (contains(head, "<VTKFile")) return kVtk;
+  if (contains(head, "<VTKFile")) return contains(head, "\"PolyData\"") ? kVtp : kVtk;
   if (contains(head, "<COLLADA")) return kCollada;
   if (contains(head, "<X3D")) return kX3d;
   if (contains(head, "<Xdmf")) return {"an XDMF file", kMeshio};

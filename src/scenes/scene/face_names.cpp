@@ -15,6 +15,7 @@
 #include "scene/scene.h"
 #include "scene/scene_copy.h"
 #include "text/number_text.h"
+#include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
 
@@ -89,10 +90,10 @@ IsWanted by_normal(const Scene& scene, std::string_view selector) {
   const kernel::ExactVec3 direction = kernel::exact_vector({numbers.list[0], numbers.list[1], numbers.list[2]}).v;
   if (is_zero(direction)) refuse_selector(selector, "0,0,0 is no direction");
   if (!(degrees >= 0.0 && degrees <= 180.0)) refuse_selector(selector, "an angle is from 0 to 180 degrees");
-  return [&scene, direction, above = AngleBelow(180.0 - degrees)](FaceId id) {
-    const auto pieces = scene.pieces_of(id);
-    const kernel::ExactVec3 back = direction * kernel::Integer(-1);
-    return std::ranges::none_of(pieces, [&](const Piece& p) { return above.holds(exact_normal(scene, p), back); });
+  return [&scene, direction, degrees](FaceId id) {
+    return std::ranges::all_of(scene.pieces_of(id), [&](const Piece& piece) {
+      return compare_angle(degrees, exact_normal(scene, piece), direction) >= 0;
+    });
   };
 }
 
@@ -182,6 +183,27 @@ void require_free_name(const std::string& name) {
                "give another name");
 }
 
+// Where a name is that of a patch, some of whose faces stay.
+std::vector<Problem> warnings_of_mergers(const Scene& scene, std::span<const FaceName> names,
+                                         const std::vector<std::size_t>& patch_of_face) {
+  std::vector<Problem> warnings;
+  for (std::size_t p = 0; p < scene.patches().size(); ++p) {
+    const std::string& name = scene.patches()[p].name;
+    if (std::ranges::find(names, name, &FaceName::name) == names.end()) continue;
+    std::size_t stay = 0, join = 0;
+    for (std::size_t f = 0; f < patch_of_face.size(); ++f) {
+      if (patch_of_face[f] == p) ++(index_of(scene.faces()[f].patch) == p ? stay : join);
+    }
+    if (stay == 0 || join == 0) continue;
+    warnings.push_back({.what = "the name " + in_quotes(name, text::kShownName) + " is that of a patch of " +
+                                text::counted(stay, "face") + ", and " + text::counted(join, "face") +
+                                (join == 1 ? " was added to it" : " were added to it"),
+                        .why = "faces of one name are one patch",
+                        .suggestion = "give another name if that is not meant"});
+  }
+  return warnings;
+}
+
 }  // namespace
 
 FaceName face_name(std::string_view text) {
@@ -210,7 +232,7 @@ Scene with_names(const Scene& scene, std::span<const FaceName> names) {
     const std::size_t patch = patch_named(one.name);
     for (const FaceId face : found_by(scene, one.selector)) patch_of_face[index_of(face)] = patch;
   }
-  return regrouped(scene, all, patch_of_face);
+  return regrouped(scene, all, patch_of_face, warnings_of_mergers(scene, names, patch_of_face));
 }
 
 }  // namespace exactff

@@ -20,17 +20,11 @@
 
 namespace exactff {
 
-AngleBelow::AngleBelow(double degrees) {
-  const kernel::Rational cosine = kernel::to_rational(kernel::cosine_of_degrees(degrees));
-  sign_ = kernel::sign(cosine);
-  squared_ = cosine * cosine;
-}
-
-bool AngleBelow::holds(const kernel::ExactVec3& n, const kernel::ExactVec3& m) const {
+int compare_angle(double degrees, const kernel::ExactVec3& n, const kernel::ExactVec3& m) {
   const kernel::Integer product = dot(n, m);
-  if (const int sign = sgn(product); sign != sign_ || sign == 0) return sign > sign_;
-  const int larger = cmp(kernel::Rational(product * product), squared_ * kernel::Rational(dot(n, n) * dot(m, m)));
-  return sign_ * larger > 0;
+  const int sign = sgn(product), of_cosine = degrees < 90.0 ? 1 : degrees > 90.0 ? -1 : 0;
+  if (sign != of_cosine || sign == 0) return sign - of_cosine;
+  return sign * kernel::compare_with_squared_cosine(product * product, dot(n, n) * dot(m, m), degrees);
 }
 
 kernel::ExactVec3 exact_normal(const Scene& scene, const Piece& piece) {
@@ -49,7 +43,7 @@ struct PieceEdge {
 class PatchMaker {
  public:
   PatchMaker(const Scene& scene, const SceneOptions& options)
-      : scene_(scene), mode_(options.patches), groups_(scene.pieces().size()), below_(options.smooth_degrees) {
+      : scene_(scene), mode_(options.patches), groups_(scene.pieces().size()), degrees_(options.smooth_degrees) {
     if (mode_ == PatchMode::kSmooth) {
       for (const Piece& piece : scene.pieces()) normals_.push_back(exact_normal(scene, piece));
     }
@@ -110,7 +104,7 @@ class PatchMaker {
   }
   [[nodiscard]] bool belong_together(std::uint32_t p, std::uint32_t q) const {
     if (mode_ == PatchMode::kParts) return true;
-    if (mode_ == PatchMode::kSmooth) return below_.holds(normals_[p], normals_[q]);
+    if (mode_ == PatchMode::kSmooth) return compare_angle(degrees_, normals_[p], normals_[q]) > 0;
     return face(p).shape == FaceShape::kPlanar && face(q).shape == FaceShape::kPlanar &&
            planes(scene_).of_piece(p) == planes(scene_).of_piece(q) &&
            kernel::dot(kernel::unit(face(p).newell), kernel::unit(face(q).newell)) > 0.0;
@@ -157,7 +151,7 @@ class PatchMaker {
   const Scene& scene_;
   PatchMode mode_;
   Groups groups_;
-  AngleBelow below_;
+  double degrees_;
   std::vector<kernel::ExactVec3> normals_;
 };
 

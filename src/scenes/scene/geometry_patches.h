@@ -1,4 +1,4 @@
-// Whether the fronts of two planes differ by less than an angle, decided exactly.
+// How the angle between the fronts of two planes compares with a given one, decided exactly.
 #pragma once
 
 #include "exactff/scene.h"
@@ -6,16 +6,9 @@
 
 namespace exactff {
 
-// n . m > c |n| |m| for vectors other than 0, where c is the double nearest to the angle's cosine.
-class AngleBelow {
- public:
-  explicit AngleBelow(double degrees);
-  [[nodiscard]] bool holds(const kernel::ExactVec3& n, const kernel::ExactVec3& m) const;
-
- private:
-  int sign_ = 0;              // of c
-  kernel::Rational squared_;  // c c
-};
+// The sign of n . m - cos(degrees) |n| |m| for vectors other than 0, from 0 to 180 degrees: positive if the angle
+// between them is smaller.
+[[nodiscard]] int compare_angle(double degrees, const kernel::ExactVec3& n, const kernel::ExactVec3& m);
 
 // A normal of the piece, towards its front: exact, of any length.
 [[nodiscard]] kernel::ExactVec3 exact_normal(const Scene& scene, const Piece& piece);

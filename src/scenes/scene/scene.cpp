@@ -401,7 +401,12 @@ void add_place(const Scene& scene, const Face& face, PatchSummary& summary) {
 
 PatchSummary summarise(const Scene& scene, PatchId id) {
   const Patch& patch = scene.patch(id);
-  const std::vector<FaceId> faces = scene.faces_of({id, {}});
+  std::vector<FaceId> faces = scene.faces_of({id, {}});
+  std::ranges::sort(faces, {}, [&](FaceId face) {  // so that no digit of a sum depends on the order of faces
+    const Face& f = scene.face(face);
+    const Vec3& first = scene.vertices()[f.rings[0][0]];
+    return std::tuple(f.area, f.newell.x, f.newell.y, f.newell.z, first.x, first.y, first.z);
+  });
   PatchSummary summary{patch.name, patch.faces.size(), 0.0, common_front(scene, faces), materials_of(scene, patch)};
   if (!faces.empty()) {
     summary.low = {HUGE_VAL, HUGE_VAL, HUGE_VAL};

@@ -22,6 +22,9 @@ struct SceneBuilder::State {
   text::ProblemList warnings;
   std::size_t zero_area_count = 0;
   std::size_t first_zero_area = 0;
+  std::size_t bent_count = 0;  // faces that are worth a warning
+  std::size_t first_bent = 0;
+  double most_bent = 0.0;
   std::vector<std::pair<FaceId, Vec3>> stated_normals;
 
   void check_vertices();
@@ -31,7 +34,7 @@ struct SceneBuilder::State {
   void cut(FaceId id);
   void refuse(const Face& face, const FaceFault& fault);
   void add_parts(FaceId id, const std::vector<ConvexPart>& parts);
-  void warn_out_of_plane(const Face& face);
+  void warn_out_of_plane();
   void judge_normals();
   void warn_zero_area();
   void warn_hidden_names();
@@ -130,6 +133,7 @@ Scene SceneBuilder::build() {
   state.problems.throw_if_any();
   state.judge_normals();
   state.warn_zero_area();
+  state.warn_out_of_plane();
   if (state.options.patches == PatchMode::kFaces) state.split_patches();
   state.warn_hidden_names();
   state.data->warnings = state.warnings.take("warnings");
@@ -199,7 +203,10 @@ void SceneBuilder::State::cut(FaceId id) {
   if (cut.fault) return refuse(face, *cut.fault);
   if (face.shape == FaceShape::kZeroArea && zero_area_count++ == 0) first_zero_area = index_of(id);
   add_parts(id, cut.parts);
-  warn_out_of_plane(face);
+  constexpr double kWorthSaying = 1e-6;
+  if (face.out_of_plane <= kWorthSaying) return;
+  if (bent_count++ == 0) first_bent = index_of(id);
+  most_bent = std::max(most_bent, face.out_of_plane);
 }
 
 void SceneBuilder::State::refuse(const Face& face, const FaceFault& fault) {
@@ -236,14 +243,17 @@ std::string two_digits(double value) {
 
 }  // namespace
 
-void SceneBuilder::State::warn_out_of_plane(const Face& face) {
-  constexpr double kWorthSaying = 1e-6;
-  if (face.out_of_plane <= kWorthSaying) return;
-  warnings.add({data->file, face.line,
-                quoted(face) + " is out of plane by " + two_digits(face.out_of_plane) + " of its diameter",
-                "it was cut into " + std::to_string(face.piece_count) +
-                    " triangles; a different cut would give a different surface",
-                "use triangles if this matters; `exactff convert --triangulate` writes those of this cut"});
+// One warning for all, so that others are seen.
+void SceneBuilder::State::warn_out_of_plane() {
+  if (bent_count == 0) return;
+  const Face& first = data->faces[first_bent];
+  const std::string are = bent_count == 1
+                              ? " is out of plane by "
+                              : " and " + std::to_string(bent_count - 1) + " more are out of plane by up to ";
+  warnings.add({data->file, first.line, quoted(first) + are + two_digits(most_bent) + " of the diameter",
+                "what is not planar is cut into triangles; other cuts would give other surfaces",
+                "use triangles if this matters; `exactff convert --triangulate` writes those of this cut, and where "
+                "`exactff info` finds a gap, --weld makes walls along the axes planar"});
 }
 
 namespace {

@@ -171,8 +171,9 @@ std::set<FaceId> all_faces_of(const Scene& scene, std::span<const Selection> sel
 }  // namespace
 
 Scene regrouped(const Scene& scene, const std::vector<std::string>& names,
-                const std::vector<std::size_t>& patch_of_face) {
+                const std::vector<std::size_t>& patch_of_face, std::vector<Problem> warnings) {
   auto copy = copy_of(SceneInside::data(scene));
+  std::ranges::move(warnings, std::back_inserter(copy->warnings));
   std::vector<std::vector<FaceId>> faces(names.size());
   for (std::size_t f = 0; f < patch_of_face.size(); ++f) faces[patch_of_face[f]].push_back(static_cast<FaceId>(f));
   copy->patches.clear();

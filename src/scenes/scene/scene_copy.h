@@ -36,9 +36,10 @@ class SceneCopy {
   std::size_t added_ = 0;
 };
 
-// The same scene in which face f belongs to the patch names[patch_of_face[f]]. Patches without faces are left out.
+// The same scene in which face f belongs to the patch names[patch_of_face[f]], with further warnings. Patches without
+// faces are left out.
 [[nodiscard]] Scene regrouped(const Scene& scene, const std::vector<std::string>& names,
-                              const std::vector<std::size_t>& patch_of_face);
+                              const std::vector<std::size_t>& patch_of_face, std::vector<Problem> warnings = {});
 
 // The same scene near the origin, where coordinates of far away leave few bits for its shape. Only where every
 // difference is exact: an axis is moved if all its coordinates lie within a sixteenth of the nearest one, so that each

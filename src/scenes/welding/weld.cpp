@@ -182,9 +182,22 @@ class Welding {
   [[nodiscard]] std::span<const Id> live() const { return live_; }
   [[nodiscard]] double largest_move() const { return largest_move_; }
   [[nodiscard]] std::size_t junctions() const { return junctions_; }
-  [[nodiscard]] std::size_t open_edges() const {
-    std::size_t open = 0;
-    for_each_open_edge(edges(), [&](std::span<const Edge>) { ++open; });
+  // Of each face those whose first use it is, and the faces that edges connect.
+  struct OpenEdges {
+    std::vector<std::size_t> of_face;
+    Groups parts;
+    std::size_t count = 0;
+  };
+  [[nodiscard]] OpenEdges open_edges() const {
+    OpenEdges open{std::vector<std::size_t>(rings_.size(), 0), Groups(rings_.size())};
+    const std::vector<Edge> all = edges();
+    for_each_open_edge(all, [&](std::span<const Edge> uses) {
+      ++open.of_face[uses[0].face];
+      ++open.count;
+    });
+    for (std::size_t e = 1; e < all.size(); ++e) {
+      if (all[e].ends() == all[e - 1].ends()) open.parts.join(all[e].face, all[e - 1].face);
+    }
     return open;
   }
   [[nodiscard]] double median_open_edge() const {
@@ -579,10 +592,40 @@ namespace {
 
 constexpr std::size_t kNotPossible = std::numeric_limits<std::size_t>::max();
 
-// The open edges that welding leaves. Not possible where chains are too long, or where a face vanishes that is no
-// sliver, or is the last of its patch.
-std::size_t open_edges_after(const Scene& scene, double length) {
-  constexpr double kSliver = 16.0;
+// Of connected faces, those after welding count if it closes what was a surface with open edges, or half of all open
+// edges, and the faces are not parallel. Others, such as free sheets that lie near each other, count as before, unless
+// the length is a rounding.
+std::size_t counted_edges(const Scene& scene, bool is_rounding, Welding::OpenEdges before, Welding::OpenEdges after) {
+  constexpr double kParallel = 0.999;  // the cosine
+  struct Part {
+    std::size_t before = 0, after = 0;
+    bool is_bent = false, closes_one = false;
+  };
+  const std::uint32_t faces = static_cast<std::uint32_t>(scene.faces().size());
+  std::vector<Part> old(faces), now(faces);  // at their first face
+  for (std::uint32_t f = 0; f < faces; ++f) {
+    for (Part* part : {&old[before.parts.root(f)], &now[after.parts.root(f)]}) {
+      part->before += before.of_face[f];
+      part->after += after.of_face[f];
+    }
+  }
+  const auto front = [&](std::uint32_t f) { return kernel::unit_by_inverse(scene.faces()[f].newell); };
+  for (std::uint32_t f = 0; f < faces; ++f) {
+    Part& part = now[after.parts.root(f)];
+    part.closes_one = part.closes_one || (old[f].before > 0 && old[f].after == 0);
+    part.is_bent = part.is_bent || std::abs(kernel::dot(front(f), front(after.parts.root(f)))) <= kParallel;
+  }
+  std::size_t count = 0;
+  for (const Part& part : now) {
+    const bool counts = is_rounding || (part.is_bent && (part.closes_one || 2 * part.after <= part.before));
+    count += counts ? part.after : part.before;
+  }
+  return count;
+}
+
+// Not possible where chains are too long, or where a face vanishes that is no sliver, or is the last of its patch.
+std::size_t open_edges_after(const Scene& scene, const Welding& exact, double length) {
+  constexpr double kSliver = 16.0, kRounding = 0x1p-20;
   Welding welding(scene, length);
   try {
     welding.run();
@@ -603,7 +646,7 @@ std::size_t open_edges_after(const Scene& scene, double length) {
     };
     if (std::ranges::none_of(face.rings[0], far)) return kNotPossible;
   }
-  return welding.open_edges();
+  return counted_edges(scene, length <= kRounding * extent(scene).diameter, exact.open_edges(), welding.open_edges());
 }
 
 // At least the length, with two digits.
@@ -624,12 +667,15 @@ std::optional<Gap> gap(const Scene& scene) {
   const double size = extent(scene).diameter;
   const std::size_t open_edges = scene.open_edge_count();
   if (open_edges == 0 || size < 0x1p-900) return std::nullopt;
-  const std::size_t before = open_edges_after(scene, 0.0);
+  Welding exact(scene, 0.0);
+  const double median = exact.median_open_edge();
+  exact.run();
+  const std::size_t before = open_edges_after(scene, exact, 0.0);
   std::size_t fewest = before;
   double length = 0.0;
-  const double most = std::min(size * kMostShare, Welding(scene, 0.0).median_open_edge() * kMostOfEdge);
+  const double most = std::min(size * kMostShare, median * kMostOfEdge);
   for (double tried = most; tried >= size * kLeastShare && before > 0; tried /= kStep) {
-    const std::size_t open = open_edges_after(scene, tried);
+    const std::size_t open = open_edges_after(scene, exact, tried);
     if (open == kNotPossible || open > fewest) continue;
     fewest = open;
     if (open < before) length = tried;
@@ -638,15 +684,13 @@ std::optional<Gap> gap(const Scene& scene) {
   double too_small = length / kStep;
   for (int k = 0; k < kHalvings; ++k) {
     const double middle = std::sqrt(too_small) * std::sqrt(length);
-    (open_edges_after(scene, middle) <= fewest ? length : too_small) = middle;
+    (open_edges_after(scene, exact, middle) <= fewest ? length : too_small) = middle;
   }
-  std::size_t open = open_edges_after(scene, two_digits_above(length));
-  if (open <= fewest) {
-    length = two_digits_above(length);
-  } else {
-    open = open_edges_after(scene, length);
-  }
-  return Gap{length, open_edges, open};
+  const double rounded = two_digits_above(length);
+  if (open_edges_after(scene, exact, rounded) <= fewest) length = rounded;
+  Welding welding(scene, length);
+  welding.run();
+  return Gap{length, open_edges, welding.open_edges().count};
 }
 
 }  // namespace exactff

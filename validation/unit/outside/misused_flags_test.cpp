@@ -66,6 +66,12 @@ TEST_F(MisusedFlags, TheNearestFlagIsSuggestedAndWordsKeepTheirOrder) {
                  "exactff point has no flag --att (the command line has '--att 200 0 400'); did you mean --at?");
 }
 
+TEST_F(MisusedFlags, FlagsThatCannotBeGivenTogetherAreNamed) {
+  const auto run = validation::run_exactff({"matrix", scene, "--accuracy", "1e-2", "--matrix", scene});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.error.find(" cannot be given with --"), std::string::npos) << run.error;
+}
+
 TEST_F(MisusedFlags, AFlagIsNoNameNorFileOfAnother) {
   expect_refused({"radiosity", scene, "--two-sided", "--accuracy", "1e-2"},
                  "--two-sided needs a name (--accuracy follows, which begins like a flag); write --two-sided NAME...");

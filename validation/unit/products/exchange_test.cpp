@@ -153,6 +153,10 @@ TEST(ExchangeCommand, RefusesWhatTheSceneTells) {
       {"matrix", scene, "--accuracy", "1e-9", "--certify", "--esatan", conductors.string(), "-o", values.string()});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_NE(run.error.find("Kd differs between red, green and blue"), std::string::npos) << run.error;
+  const validation::ProgramRun unknown =
+      validation::run_exactff({"matrix", scene, "--exchange", (folder.path() / "e.xyz").string()});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.error.find("name a file .csv, .npz or .jsonl"), std::string::npos) << unknown.error;
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
   PlainScene bright;
   add_cube(bright, "room", 1.0, true);

@@ -126,6 +126,8 @@ TEST_F(TemperaturesCommand, RefusesConditionsThatAreNone) {
   expect_refused("patch,T,Q\nlid,300,\n", "bad.csv:2:");
   expect_refused("name,T,Q\nlid,300,\n", "bad.csv:1: the first line has not the columns");
   expect_refused("patch,T,Q\n*,300,\n(open),,5\n", "bad.csv:3: (open) has a Q");
+  expect_refused("patch,T,Q\nbottom,1e200,\nside,300,\nslope,300,\nends,300,\n",
+                 "'bottom' gives off more than 1e+300 W per unit of area (doubles end");
   expect_refused("patch,T,Q\n*,,0\n", "no patch has a temperature, and nothing is open");
 }
 

@@ -84,7 +84,11 @@ TEST(PatchesFromGeometry, DecideAnglesExactly) {
   EXPECT_EQ(count(folded(4), "smooth:53"), 2U);
   EXPECT_EQ(count(folded(3), "smooth:45"), 2U);
   EXPECT_EQ(count(folded(0x1.7ffffffffffffp+1), "smooth:45.00000000000001"), 1U);
+  EXPECT_EQ(count(folded(3), "smooth:45.00000000000001"), 1U);
+  EXPECT_EQ(count(folded(0x1.8000000000001p+1), "smooth:45"), 2U);
+  EXPECT_EQ(count(folded(0x1.7ffffffffffffp+1), "smooth:45"), 1U);
   EXPECT_EQ(count(folded(0), "smooth:0"), 2U);
+  EXPECT_EQ(count(folded(0), "smooth:4.9e-324"), 1U);
 }
 
 TEST(PatchesFromGeometry, HaveNamesThatNoOrderChanges) {
@@ -126,7 +130,13 @@ TEST(FaceNames, AreThoseThatSelectorsFind) {
   EXPECT_EQ(faces("box:0,0,0,1,2,3"), 12U);
   EXPECT_EQ(faces("box:7,2,3,-1,-1,3"), 4U);
   EXPECT_EQ(faces("normal:0,0,1"), 4U);
-  EXPECT_EQ(faces("normal:0,1,1:45.001"), 8U);
+  EXPECT_EQ(faces("normal:0,1,1:45"), 8U);
+  EXPECT_THROW((void)faces("normal:0,1,1:44.99999999999999"), InputError);
+  EXPECT_EQ(faces("normal:0,-1,-1:135"), 24U);
+  EXPECT_EQ(faces("normal:0,-1,-1:134.99999999999997"), 16U);
+  EXPECT_EQ(faces("normal:0,0,1:90"), 20U);
+  EXPECT_EQ(faces("normal:0,0,1:0"), 4U);
+  EXPECT_EQ(faces("normal:0,0,1:180"), 24U);
   EXPECT_EQ(faces("normal:0,1,1:46 & box:0,0,0,1,2,3"), 4U);
   EXPECT_EQ(faces("plane:0,0,2,6"), 4U);
   EXPECT_EQ(faces("plane:0,0,1,3.5:0.5"), 4U);
@@ -137,6 +147,35 @@ TEST(FaceNames, AreThoseThatSelectorsFind) {
   EXPECT_EQ(both.faces_of(both.select("top")).size(), 2U);
   EXPECT_EQ(both.faces_of(both.select("left")).size(), 12U);
   EXPECT_EQ(names_of(both), (std::vector<std::string>{"things", "top", "left"}));
+}
+
+TEST(FaceNames, OfPatchesThatKeepFacesAreTold) {
+  const Scene scene = generate::build(boxes({{{0, 0, 0}, {1, 2, 3}}}), {}, scene_options("faces"));
+  const auto warnings = [&](const std::string& text) {
+    const Scene named = with_names(scene, std::vector<FaceName>{face_name(text)});
+    return named.warnings().empty() ? std::string() : named.warnings().back().message();
+  };
+  EXPECT_TRUE(holds(warnings("things:1=things:2"),
+                    "the name 'things:1' is that of a patch of 1 face, and 1 face was added to it (faces of one name"));
+  EXPECT_TRUE(holds(warnings("things:1=normal:0,0,1"), "2 faces were added"));
+  EXPECT_EQ(warnings("things:1=things:1"), "");
+  EXPECT_EQ(warnings("new=things:1"), "");
+}
+
+TEST(PatchSummary, DoesNotDependOnTheOrderOfFaces) {
+  for (std::uint64_t s = 0; s < scaled_count(20); ++s) {
+    Random random(seed_of(s));
+    PlainScene scene;
+    for (int k = 0; k < 30; ++k) {
+      const Vec3 a{random.unit(), random.unit(), random.unit()};
+      scene.add_ring(scene.patch("soup"), {a, {a.x + 1, a.y, random.unit()}, {a.x, a.y + random.unit(), a.z + 0.1}});
+    }
+    const PatchSummary one = summarise(generate::build(scene), PatchId{0});
+    std::ranges::reverse(scene.patch("soup").faces);
+    const PatchSummary other = summarise(generate::build(scene), PatchId{0});
+    EXPECT_EQ(one.centre, other.centre);
+    EXPECT_EQ(one.area, other.area);
+  }
 }
 
 TEST(FaceNames, RefuseWhatCannotBeRead) {

@@ -189,8 +189,21 @@ TEST(SceneBuilder, WarnsAboutFacesOutOfPlaneByMoreThanAMillionth) {
     EXPECT_EQ(scene.face(FaceId{0}).shape, FaceShape::kTriangulated);
     EXPECT_EQ(scene.warnings().size(), height > 1e-5 ? 1U : 0U);
     if (height < 1e-5) continue;
-    EXPECT_EQ(scene.warnings()[0].what, "face 'a:1' is out of plane by 0.00017 of its diameter");
+    EXPECT_EQ(scene.warnings()[0].what, "face 'a:1' is out of plane by 0.00017 of the diameter");
   }
+}
+
+TEST(SceneBuilder, TellsOfAllBentFacesAtOnce) {
+  SceneBuilder builder;
+  const MaterialId material = builder.add_material({});
+  for (const double height : {0.0, 0x1p-10, 0x1p-8}) {
+    const std::uint32_t first = static_cast<std::uint32_t>(builder.vertex_count());
+    for (const Vec3& v : {Vec3{0, 0, 0}, {1, 0, 0}, {1, 1, height}, {0, 1, 0}}) builder.add_vertex(v);
+    builder.add_face(builder.patch("a"), material, {{first, first + 1, first + 2, first + 3}});
+  }
+  const Scene scene = builder.build();
+  ASSERT_EQ(scene.warnings().size(), 1U);
+  EXPECT_EQ(scene.warnings()[0].what, "face 'a:2' and 1 more are out of plane by up to 0.00069 of the diameter");
 }
 
 TEST(SceneBuilder, CollectsEveryMistake) {

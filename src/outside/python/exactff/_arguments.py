@@ -219,6 +219,13 @@ def require_free(path: Path, existing: str, read: Sequence[Path] = ()) -> None:
                "name another file, or replace it with existing='replace'")
 
 
+def require_table(path: Path) -> None:
+    """Refuses other extensions than those of tables."""
+    if os.path.splitext(os.fspath(path))[1] not in (".csv", ".npz", ".jsonl"):
+        refuse(f"{os.fspath(path)}: cannot hold a table", "the extension says how it is written",
+               "name a file .csv, .npz or .jsonl")
+
+
 def _read_with(path: str) -> Iterator[str]:
     """The file and, of an OBJ file, its MTL files, as far as they still exist."""
     if not os.path.isfile(path):

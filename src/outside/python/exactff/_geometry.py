@@ -177,6 +177,12 @@ def build(vertices: Any, faces: Any, patch: Any, names: Any, materials: Optional
         refuse(f"faces[{face}] has the vertex {int(corners[at])}", f"vertices are numbered from 0 to {len(points) - 1}",
                "correct the index")
     patch_of_face, patch_names = _patches(patch, names, len(starts) - 1)
+    return make(points, corners, starts, patch_of_face, patch_names, materials, skip_bad_faces)
+
+
+def make(points: Floats, corners: Ints, starts: Ints, patch_of_face: Ints, patch_names: list[str],
+         materials: Optional[Mapping[str, MaterialLike]], skip_bad_faces: bool) -> _exactff.Scene:
+    """The scene of arrays that are checked; each patch has a material."""
     rows = _materials(materials, patch_names)
     return _exactff.Scene.build(points, corners, starts, patch_of_face, patch_of_face, patch_names, rows,
                                 skip_bad_faces)

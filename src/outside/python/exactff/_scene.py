@@ -8,7 +8,7 @@ from typing import Any, Literal, Mapping, Optional, Sequence, Union, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _arguments, _exactff, _geometry
+from . import _arguments, _exactff, _geometry, _meshes
 from ._arguments import check_existing, Floats, Ints, Measure, Names, Progress, refuse, require_free, shown, warn
 from ._geometry import Contact, Finding, Gap, Material, Patch, Receivers, Report, Welding
 from ._pair import _Again, FormFactor, FormFactors, Status
@@ -79,6 +79,57 @@ class Scene:
         """A generated scene, such as ``"teapot:segments=8"``; ``exactff info @`` lists the models. The same text gives
         the same bits on every machine."""
         return cls._made(_exactff.Scene.from_model(text, patches), "@" + text)
+
+    @classmethod
+    def from_mesh(cls, points: Any, cells: Any = None, patches: Any = None, names: Any = None,
+                  materials: Optional[Mapping[str, Union[Material, Mapping[str, Any]]]] = None, *,
+                  skip_bad_faces: bool = False) -> Scene:
+        """A scene from a mesh: surface cells as they are, of volume cells the outer faces, with their fronts outward.
+
+        Parameters
+        ----------
+        points : (n, 3), or (n, 2) with z = 0, in any unit of length. Or, without `cells`, an object with ``points`` or
+            ``vertices`` and ``faces``, as of PyVista and trimesh; or a meshio.Mesh. Points of no face are left out
+        cells : faces as in :class:`Scene`; or blocks ``[(type, (m, k) integers), ...]`` by meshio's names of types:
+            triangle, quad, polygon, tetra, pyramid, wedge, hexahedron, and curved ones (triangle6, tetra10, ...), of
+            which the corners count, with a warning. Lines and vertices are left out
+        patches : an integer, or a name, for each cell, or such an array for each block; default: one patch
+        names, materials, skip_bad_faces : as in :class:`Scene`
+
+        An outer face is one that a single volume cell has, by the indices of its corners. Its patch is that of the surface
+        cell with the same corners, which it replaces, or else of its volume cell. Surface cells between two volume cells
+        stay, with a warning. No bit of a coordinate changes.
+
+        Raises InputError for wrong indices, points that are not finite, unknown types, a volume cell that is there twice,
+        and a face of three volume cells."""
+        if cells is None:
+            if hasattr(points, "cell_sets"):
+                return cls.from_meshio(points, patches, names, materials, skip_bad_faces=skip_bad_faces)
+            points, cells = _meshes.points_and_faces(points)
+        return cls._made(_meshes.build(points, cells, patches, names, materials, skip_bad_faces), "mesh")
+
+    @classmethod
+    def from_meshio(cls, mesh: Any, patches: Optional[str] = None, names: Any = None,
+                    materials: Optional[Mapping[str, Union[Material, Mapping[str, Any]]]] = None, *,
+                    skip_bad_faces: bool = False) -> Scene:
+        """A scene from a meshio.Mesh, or from a file that meshio reads (package python3-meshio): Gmsh, Abaqus, CalculiX,
+        Nastran, VTK, MED, Exodus and others. Faces are those of `from_mesh`.
+
+        Parameters
+        ----------
+        patches : the name of integer cell data, or "sets" for cell sets and element sets. Default: physical groups of
+            Gmsh, else sets, else numbers that formats have for groups (Nastran's properties), else the first integers
+            that repeat, with a warning; else one patch
+        names : names of the integers, as a list or a dict. Default: those of physical groups, else for example ``ref_7``
+
+        A cell of several sets belongs to the smallest, with a warning; cells of none are the patch ``default``. What meshio
+        does not read (side sets of Exodus, ``*SURFACE`` of Abaqus) is lost. Raises InputError."""
+        is_file = isinstance(mesh, (str, os.PathLike))
+        file = os.path.abspath(os.fspath(mesh)) if is_file else ""
+        made = _meshes.build_meshio(_meshes.read(mesh) if is_file else mesh, patches, names, materials, skip_bad_faces)
+        scene = cls._made(made, os.path.basename(file) if is_file else "mesh")
+        scene._read = (file,) if is_file else ()
+        return scene
 
     # --- what it contains ---
 
@@ -189,8 +240,12 @@ class Scene:
         """The same scene in which the faces that a selector finds are a patch of that name: ``{"left fin":
         "box:0,0,0,1,20,30"}``. Selectors: ``box:X0,Y0,Z0,X1,Y1,Z1``, ``normal:X,Y,Z[:DEGREES]``,
         ``plane:A,B,C,D[:DISTANCE]``, ``PATCH:1-20,25``, ``PATCH``, or several with " & " between. They are about this
-        scene; of two that find a face, the later one counts. Raises InputError if one finds nothing."""
-        return self._changed(lambda _: self._scene.with_names(list(names.items())), ("all",))
+        scene; of two that find a face, the later one counts. Warns where a patch has this name and keeps faces. Raises
+        InputError if one finds nothing."""
+        made = self._changed(lambda _: self._scene.with_names(list(names.items())), ("all",))
+        for warning in made._scene.warnings()[len(self._scene.warnings()):]:
+            warn(warning)
+        return made
 
     def gap(self) -> Optional[Gap]:
         """How far apart corners are that should be one, so that `welded` with this length closes most; None if no length

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _arguments, _exactff
-from ._arguments import check_existing, Floats, Measure, Names, Path, Progress, refuse, require_free, shown, warn
+from ._arguments import (check_existing, Floats, Measure, Names, Path, Progress, refuse, require_free, require_table,
+                         shown, warn)
 from ._pair import Status
 from ._scene import On, Scene
 
@@ -165,6 +166,7 @@ class ViewFactorMatrix:
         if self._made is None:
             refuse("the matrix was copied or pickled", "a copy has the numbers alone", "use the first one")
         if save is not None:
+            require_table(save)
             require_free(save, existing, self._read)
         with shown(progress, "exchange factor") as tell:
             channels, claim, areas = self._made.exchange(_arguments.thread_count(threads),
@@ -204,6 +206,7 @@ class ViewFactorMatrix:
         if self._made is None:
             refuse("the matrix was copied or pickled", "a copy has the numbers alone", "use the first one")
         if save is not None:
+            require_table(save)
             require_free(save, existing, self._read)
         t, q, areas, emissivities, rest, claim = self._made.temperatures(dict(known), dict(heats),
                                                                          "" if save is None else os.fspath(save))
