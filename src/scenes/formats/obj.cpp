@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <unordered_map>
@@ -35,6 +36,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kDefaultPatch = "default";
 constexpr std::string_view kNoMaterial = "(none)";
+constexpr std::uint32_t kNoTexture = std::numeric_limits<std::uint32_t>::max(), kBadTexture = kNoTexture - 1;
 constexpr std::size_t kMostIndices = std::numeric_limits<std::uint32_t>::max();
 
 // Distinct names in the order of their first use, in UTF-8.
@@ -84,11 +86,11 @@ struct Tally {
 
 bool is_passed_over(std::string_view keyword) {
   static constexpr std::array kWords = {
-      std::string_view("vt"),         std::string_view("vp"),        std::string_view("p"),
-      std::string_view("l"),          std::string_view("s"),         std::string_view("mg"),
-      std::string_view("lod"),        std::string_view("usemap"),    std::string_view("maplib"),
-      std::string_view("shadow_obj"), std::string_view("trace_obj"), std::string_view("bevel"),
-      std::string_view("c_interp"),   std::string_view("d_interp")};
+      std::string_view("vp"),        std::string_view("p"),      std::string_view("l"),
+      std::string_view("s"),         std::string_view("mg"),     std::string_view("lod"),
+      std::string_view("usemap"),    std::string_view("maplib"), std::string_view("shadow_obj"),
+      std::string_view("trace_obj"), std::string_view("bevel"),  std::string_view("c_interp"),
+      std::string_view("d_interp")};
   return std::find(kWords.begin(), kWords.end(), keyword) != kWords.end();
 }
 
@@ -104,6 +106,8 @@ class ObjReader {
   void read_vertex(std::string_view values);
   std::array<double, 3> read_coordinates(std::string_view values);
   void read_normal(std::string_view values);
+  void read_texture(std::string_view values);
+  void note_texture_of(std::string_view corner);
   void add_normal_of(std::string_view corner, Vec3& sum) const;
   void read_face(std::string_view corners);
   std::optional<std::uint32_t> read_corner(std::string_view corner);
@@ -119,6 +123,7 @@ class ObjReader {
   std::vector<fs::path> library_paths(std::string_view names) const;
   void add_materials();
   void add_faces();
+  void add_texture_of(const ObjFace& face);
 
   void fail(std::string what, std::string why, std::string suggestion) {
     problems_.add({file_, line_.number, std::move(what), std::move(why), std::move(suggestion)});
@@ -137,6 +142,8 @@ class ObjReader {
 
   std::vector<ObjFace> faces_;
   std::vector<std::uint32_t> corners_;                      // of all faces
+  std::vector<TexturePoint> textures_;                      // vt; NaN if it cannot be read
+  std::vector<std::uint32_t> texture_corners_;              // of the corners up to the last one with vt; kNoTexture
   std::vector<Vec3> normals_;                               // vn
   std::vector<std::pair<std::size_t, Vec3>> face_normals_;  // index into faces_, sum over its corners; by face
   NameTable groups_{kDefaultPatch};
@@ -152,6 +159,7 @@ class ObjReader {
   Tally several_groups_;
   Tally unread_geometry_;
   Tally unknown_;
+  Tally without_texture_;
 };
 
 Scene ObjReader::run() {
@@ -179,6 +187,7 @@ void ObjReader::read_line() {
   if (keyword.empty() || is_passed_over(keyword)) return;
   if (keyword == "v") return read_vertex(rest);
   if (keyword == "vn") return read_normal(rest);
+  if (keyword == "vt") return read_texture(rest);
   if (keyword == "f" || keyword == "fo") return read_face(rest);
   if (keyword == "g") return read_group(rest);
   if (keyword == "o") {
@@ -246,6 +255,18 @@ void ObjReader::read_normal(std::string_view values) {
   normals_.push_back({xyz[0], xyz[1], xyz[2]});
 }
 
+// A lone number is u; v is 0 then. No form factor depends on them, so an unreadable one is no problem.
+void ObjReader::read_texture(std::string_view values) {
+  values = before_comment(values);
+  TexturePoint point;
+  const text::ParsedNumber u = text::parse_number(text::take_word(values));
+  const std::string_view second = text::take_word(values);
+  const text::ParsedNumber v = text::parse_number(second.empty() ? "0" : second);
+  const bool sound = u.fault == text::NumberFault::kNone && v.fault == text::NumberFault::kNone;
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  textures_.push_back(sound ? TexturePoint{u.value, v.value} : TexturePoint{kNaN, kNaN});
+}
+
 void ObjReader::read_face(std::string_view corners) {
   ObjFace face = current_;
   face.line = line_.number;
@@ -257,6 +278,7 @@ void ObjReader::read_face(std::string_view corners) {
     const std::optional<std::uint32_t> corner = read_corner(word);
     sound = sound && corner;
     if (corner) corners_.push_back(*corner);
+    if (corner) note_texture_of(word);
     if (corner && !normals_.empty()) add_normal_of(word, normal);
   }
   if (normal != Vec3{}) face_normals_.emplace_back(faces_.size(), normal);
@@ -298,6 +320,20 @@ bool well_formed_tail(std::string_view tail) {
 }
 
 }  // namespace
+
+// The second number of a corner. It may refer to a vt further down.
+void ObjReader::note_texture_of(std::string_view corner) {
+  const std::size_t slash = corner.find('/');
+  if (slash == std::string_view::npos) return;
+  const std::string_view text = corner.substr(slash + 1, corner.find('/', slash + 1) - slash - 1);
+  if (text.empty()) return;
+  long index = 0;
+  const bool is_number = parse_index(text, index) == IndexText::kNumber;
+  const long position = index > 0 ? index - 1 : static_cast<long>(textures_.size()) + index;
+  const bool possible = is_number && index != 0 && position >= 0 && std::cmp_less(position, kNoTexture);
+  texture_corners_.resize(corners_.size(), kNoTexture);
+  texture_corners_.back() = possible ? static_cast<std::uint32_t>(position) : kBadTexture;
+}
 
 // The third number of a corner. A vn further down says nothing: all programs write them before the faces.
 void ObjReader::add_normal_of(std::string_view corner, Vec3& sum) const {
@@ -470,8 +506,27 @@ void ObjReader::add_faces() {
     std::vector<std::vector<std::uint32_t>> rings;
     rings.push_back(std::move(ring));
     builder_.add_face(*patches[name], static_cast<MaterialId>(face.material), std::move(rings), face.line);
+    add_texture_of(face);
     if (normal != face_normals_.end() && normal->first == i) builder_.state_normal((normal++)->second);
   }
+  if (without_texture_.count == 0) return;
+  warn(without_texture_.first_line, "a face has no valid vt at one of its corners" + without_texture_.others(),
+       "it has none then, and lightmaps leave it out; nothing else depends on it",
+       "give every corner the number of a vt");
+}
+
+void ObjReader::add_texture_of(const ObjFace& face) {
+  std::vector<TexturePoint> points;
+  std::size_t faults = 0;
+  for (std::size_t c = face.first_corner; c < face.first_corner + face.corner_count; ++c) {
+    const std::uint32_t index = c < texture_corners_.size() ? texture_corners_[c] : kNoTexture;
+    const bool exists = index < textures_.size() && std::isfinite(textures_[index].u);
+    if (exists) points.push_back(textures_[index]);
+    if (!exists && index != kNoTexture) ++faults;
+  }
+  const bool whole = points.size() == face.corner_count;
+  if (faults > 0 || (!whole && !points.empty())) return without_texture_.add(face.line, "");
+  if (whole && !points.empty()) builder_.state_texture(0, std::move(points));
 }
 
 constexpr const char* kPurpose = "a Wavefront OBJ file";
@@ -533,8 +588,51 @@ bool used_in_order(const Scene& scene, const std::vector<OutputFace>& faces) {
   return next == scene.materials().size();
 }
 
+// The vt lines of the file, each pair of numbers once, and which one each corner has; 0 for none.
+class TextureLines {
+ public:
+  TextureLines(std::string& out, const Scene& scene, const std::vector<OutputFace>& faces) {
+    if (!scene.has_texture()) return;
+    std::map<std::pair<double, double>, std::size_t> known;
+    for (const OutputFace& face : faces) {
+      for (const TexturePoint& point : texture_of(scene, face)) {
+        const auto [place, is_new] = known.try_emplace({point.u, point.v}, known.size() + 1);
+        corners_.push_back(place->second);
+        if (!is_new) continue;
+        out += "vt ";
+        append_number(out, point.u);
+        out += ' ';
+        append_number(out, point.v);
+        out += '\n';
+      }
+      if (scene.texture(face.face).empty()) corners_.resize(corners_.size() + face.corners.size());
+    }
+  }
+
+  // Of the next corner.
+  void append(std::string& out) {
+    if (const std::size_t line = next_ < corners_.size() ? corners_[next_++] : 0; line > 0)
+      (out += '/') += std::to_string(line);
+  }
+
+ private:
+  static std::vector<TexturePoint> texture_of(const Scene& scene, const OutputFace& face) {
+    const std::span<const TexturePoint> all = scene.texture(face.face);
+    if (all.empty() || (scene.face(face.face).rings.size() == 1 && face.corners == scene.face(face.face).rings.front()))
+      return {all.begin(), all.end()};
+    const FaceTexture texture(scene, face.face, 0);
+    std::vector<TexturePoint> points;
+    for (const std::uint32_t v : face.corners) points.push_back(*texture.find(places(scene)[v]));
+    return points;
+  }
+
+  std::vector<std::size_t> corners_;
+  std::size_t next_ = 0;
+};
+
 void append_faces(std::string& out, const Scene& scene, const std::vector<OutputFace>& faces,
                   const std::vector<std::string>& patches, const std::vector<std::string>& materials) {
+  TextureLines textures(out, scene, faces);
   const char* const keyword = patches_are_groups(patches) ? "g " : "o ";
   std::optional<PatchId> patch;
   std::optional<MaterialId> material;
@@ -546,7 +644,10 @@ void append_faces(std::string& out, const Scene& scene, const std::vector<Output
     if (!same || material) material = face.material;
     patch = face.patch;
     out += 'f';
-    for (const std::uint32_t corner : output.corners) (out += ' ') += std::to_string(corner + 1ULL);
+    for (const std::uint32_t corner : output.corners) {
+      (out += ' ') += std::to_string(corner + 1ULL);
+      textures.append(out);
+    }
     out += '\n';
   }
 }
