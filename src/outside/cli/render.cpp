@@ -263,15 +263,16 @@ struct RenderArguments {
   [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
 };
 
+std::string size_flag(const RenderArguments& args) { return args.lightmap.empty() ? "--size" : "--lightmap"; }
+
 render::Size size_of(const RenderArguments& args) {
   const std::string& text = args.lightmap.empty() ? args.size : args.lightmap;
   const std::size_t cross = text.find('x');
   const auto width = flags::whole_number<int>(text.substr(0, cross));
   const auto height = cross == std::string::npos ? std::nullopt : flags::whole_number<int>(text.substr(cross + 1));
   if (width && height) return {*width, *height};
-  const char* const flag = args.lightmap.empty() ? "--size" : "--lightmap";
-  text::refuse(std::string(flag) + ": " + text::in_quotes(text) + " is not a size",
-               "a picture has a width and a height in pixels", std::string("write WIDTHxHEIGHT: ") + flag + " 512x512");
+  text::refuse(size_flag(args) + ": " + text::in_quotes(text) + " is not a size",
+               "a picture has a width and a height in pixels", "write WIDTHxHEIGHT: " + size_flag(args) + " 512x512");
 }
 
 // The camera of --eye and --look.
@@ -324,14 +325,17 @@ struct Opponent {
   std::optional<render::Picture> picture = {};
 };
 
-Opponent opponent_named(const std::string& text, const render::Size& size) {
+Opponent opponent_named(const RenderArguments& args) {
+  const std::string& text = args.against;
   const std::string extension = text::in_lower_case(std::filesystem::path(text).extension().string());
   if (extension != ".npy" && extension != ".exr") return {.method = method_named(text)};
   render::Picture picture = render::read_picture(text);
+  const render::Size size = size_of(args);
   const auto words = [](const render::Size& one) { return fmt::format("{}x{}", one.width, one.height); };
   if (words(picture.size) != words(size)) {
     text::refuse(fs::path(text), fmt::format("has {} pixels, and the picture {}", words(picture.size), words(size)),
-                 "each pixel is compared with one of the same place", "give --size " + words(picture.size));
+                 "each pixel is compared with one of the same place",
+                 fmt::format("give {} {}", size_flag(args), words(picture.size)));
   }
   return {.picture = std::move(picture)};
 }
@@ -450,7 +454,7 @@ Rendered render_pictures(const render::Request& request, const Opponent& against
 int run(const RenderArguments& args) {
   check_arguments(args);
   const auto method = method_named(args.method);
-  const Opponent against = opponent_named(args.against, size_of(args));
+  const Opponent against = opponent_named(args);
   const flags::LitScene lit = with_progress([&] { return flags::load(args.scene, args.solution); });
   const Scene& scene = lit.scene;
   print_warnings(scene.warnings());

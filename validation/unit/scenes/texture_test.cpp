@@ -86,8 +86,7 @@ Scene awkward() {
 }
 
 TEST(Texture, CornersKeepTheirsInAllChangesOfFaces) {
-  for (const Scene& scene :
-       {awkward(), textured(models::make_scene("room")), textured(models::make_scene("teapot"))}) {
+  for (const Scene& scene : {awkward(), textured(models::make_scene("room")), textured(models::make_scene("teapot"))}) {
     expect_affine(scene, 2, "as built");
     std::vector<Selection> all;
     for (const Face& face : scene.faces()) all.push_back({face.patch, {}});
