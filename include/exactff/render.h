@@ -147,8 +147,10 @@ struct Hit {
 // / width, v = 1 - (j + 1/2) / height, so row 0 is at v = 1. A face has its triangles in the texture: itself, or those
 // of triangulated() (scene.h). A centre lies in a triangle exactly, boundary included. Of several triangles that hold
 // it, the one of the lowest face counts, then the first of that face; so on an edge that two faces share, one of them.
-// The affine map of the triangle gives the point, each coordinate the nearest double to the exact one. Coordinates
-// outside of 0 to 1 lie outside of the picture.
+// The affine map of the triangle gives the point, each coordinate the nearest double to the exact one. A centre on the
+// boundary of its triangle stands for the point 2^-30 of the way from there to the triangle's centre: beside an edge
+// that faces form, roundings would else put it behind one of them. Coordinates outside of 0 to 1 lie outside of the
+// picture.
 struct Lightmap {
   Size size;
   int set = 0;                     // Scene::texture

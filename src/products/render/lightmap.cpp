@@ -6,7 +6,9 @@
 //   1. For each triangle, faces in order, and each texel whose centre may lie in its box: p lies in the triangle if no
 //      side has it on its outer side, by the signs of det(side, p - its beginning).
 //   2. Its point is A + s (B - A) + t (C - A) with s = det(p - a, c - a) / d, t = det(b - a, p - a) / d,
-//      d = det(b - a, c - a), for the corners A, B, C of the face.
+//      d = det(b - a, c - a), for the corners A, B, C of the face. If p lies on the boundary, s and t are first moved
+//      towards those of the centre, 1/3, by kInwards of the way: on an edge, roundings would decide on which side of a
+//      neighbour the point lies.
 //
 // Every sign is decided by a filter in doubles, or else by rationals. The point is computed in double-double arithmetic
 // with an error bound, and by rationals where that does not determine the double.
@@ -34,6 +36,7 @@ namespace {
 using kernel::Rational;
 using kernel::double_double::Bounded;
 
+constexpr double kInwards = 0x1p-30;
 constexpr std::uint32_t kNoTriangle = std::numeric_limits<std::uint32_t>::max();
 
 struct Centre {
@@ -235,7 +238,8 @@ Bounded difference_of(double a, double b) {
 // The shares s and t, in double-double arithmetic and, where needed, exactly.
 class Shares {
  public:
-  Shares(const std::array<TexturePoint, 3>& at, const Size& size, const Centre& p) : at_(at), size_(size), p_(p) {
+  Shares(const std::array<TexturePoint, 3>& at, const Size& size, const Centre& p)
+      : at_(at), size_(size), p_(p), inwards_(TriangleTest(at, size).place_of(p) == 0 ? kInwards : 0.0) {
     std::array<Bounded, 3> x, y;
     for (std::size_t k = 0; k < 3; ++k) {
       x[k] = 2.0 * size.width * exact_bounded_of(at[k].u);
@@ -244,8 +248,9 @@ class Shares {
     const Bounded px = exact_bounded_of(p.x) - x[0], py = exact_bounded_of(p.y) - y[0];
     const Bounded bx = x[1] - x[0], by = y[1] - y[0], cx = x[2] - x[0], cy = y[2] - y[0];
     const Bounded d = sum_of_products(bx, cy, -by, cx);
-    s_ = sum_of_products(px, cy, -py, cx) / d;
-    t_ = sum_of_products(bx, py, -by, px) / d;
+    const Bounded third = inwards_ * (exact_bounded_of(1.0) / exact_bounded_of(3.0));
+    s_ = (1.0 - inwards_) * (sum_of_products(px, cy, -py, cx) / d) + third;
+    t_ = (1.0 - inwards_) * (sum_of_products(bx, py, -by, px) / d) + third;
   }
 
   // a + s (b - a) + t (c - a), rounded once.
@@ -255,8 +260,10 @@ class Shares {
     if (const auto quick = kernel::double_double::nearest(fine)) return *quick;
     if (!exact_) {
       const ExactTriangle triangle(at_, size_);
-      const Rational d = triangle.area();
-      exact_.emplace(std::array<Rational, 2>{triangle.area(2, 0, p_.x, p_.y) / d, triangle.area(0, 1, p_.x, p_.y) / d});
+      const Rational d = triangle.area(), inwards = kernel::to_rational(inwards_);
+      const auto moved = [&](const Rational& share) -> Rational { return (1 - inwards) * share / d + inwards / 3; };
+      exact_.emplace(
+          std::array<Rational, 2>{moved(triangle.area(2, 0, p_.x, p_.y)), moved(triangle.area(0, 1, p_.x, p_.y))});
     }
     const Rational from = kernel::to_rational(a);
     return kernel::nearest_double(Rational(from + (*exact_)[0] * (kernel::to_rational(b) - from) +
@@ -267,6 +274,7 @@ class Shares {
   const std::array<TexturePoint, 3>& at_;
   Size size_;
   Centre p_;
+  double inwards_;
   Bounded s_, t_;
   std::optional<std::array<Rational, 2>> exact_;
 };

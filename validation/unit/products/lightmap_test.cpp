@@ -69,7 +69,9 @@ Vec3 point_of(const Scene& triangles, const Found& found) {
   const auto& ring = triangles.faces()[found.triangle].rings[0];
   const auto axis = [&](double Vec3::*c) {
     Rational sum = 0;
-    for (std::size_t k = 0; k < 3; ++k) sum += found.weight[k] * to_rational(triangles.vertices()[ring[k]].*c);
+    const Rational moved = found.inside ? 0 : Rational(1, 1 << 30);
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += ((1 - moved) * found.weight[k] + moved / 3) * to_rational(triangles.vertices()[ring[k]].*c);
     return kernel::nearest_double(sum);
   };
   return {axis(&Vec3::x), axis(&Vec3::y), axis(&Vec3::z)};
@@ -181,10 +183,43 @@ TEST(Lightmap, CentresOnSharedEdgesBelongToTheLowestFace) {
   const Atlas atlas(scene, {.size = {8, 8}});
   for (int i = 0; i < 8; ++i) {
     EXPECT_EQ(atlas.hit(i, 7 - i)->face, FaceId{0});
-    EXPECT_EQ(atlas.hit(i, 7 - i)->point, (Vec3{(i + 0.5) / 8, (i + 0.5) / 8, 0}));
+    const Vec3 point = atlas.hit(i, 7 - i)->point;
+    EXPECT_NEAR(point.x, (i + 0.5) / 8, 1e-9);
+    EXPECT_NEAR(point.y, (i + 0.5) / 8, 1e-9);
+    EXPECT_GT(point.x, point.y);  // inside of face 0
   }
   EXPECT_EQ(atlas.hit(0, 0)->face, FaceId{1});  // v = 1 is above the first row
   EXPECT_EQ(atlas.charts(), (Charts{.faces = 2, .texels = 64}));
+}
+
+// Two faces in the form of a roof share an edge that a row of centres lies on: each texel sees the lamp above as the
+// points beside it do, wherever the ridge lies in doubles.
+TEST(Lightmap, NoFaceHidesTheEdgesOfItsNeighbours) {
+  for (const double sign : {1.0, -1.0}) {  // a ridge, a valley
+    SceneBuilder builder;
+    for (const auto& [x, y, z] : std::vector<std::array<double, 3>>{
+             {0.1, 0.7, 0.3}, {1.3, 0.9, 0.3}, {1.2, 0.1, 0.3 - 0.2 * sign}, {0.3, 2.1, 0.3 - 0.3 * sign}})
+      builder.add_vertex({x, y, z});
+    for (const auto& [x, y] : std::vector<std::array<double, 2>>{{0, 0}, {0, 2}, {2, 2}, {2, 0}})
+      builder.add_vertex({x, y, 3.0});
+    const MaterialId grey = builder.add_material({.name = "grey"});
+    builder.add_face(builder.patch("roof"), grey, {{0, 2, 1}});
+    builder.state_texture(0, {{0, 0.5}, {0.5, 0}, {1, 0.5}});
+    builder.add_face(builder.patch("roof"), grey, {{0, 1, 3}});
+    builder.state_texture(0, {{0, 0.5}, {1, 0.5}, {0.5, 1}});
+    builder.add_face(builder.patch("lamp"), grey, {{4, 5, 6, 7}});
+    const Scene scene = builder.build();
+    Request request{.scene = &scene, .sources = {scene.select("lamp")}, .quantity = Quantity::kFormFactor};
+    request.lightmap = Lightmap{.size = {65, 65}};
+    const Picture picture = render(request);
+    const auto at = [&](int column, int row) {
+      return picture.values[3 * static_cast<std::size_t>(65 * row + column)];
+    };
+    for (int column = 3; column < 62; ++column) {
+      ASSERT_GT(at(column, 33), 0.05);  // one texel below, on the same face
+      EXPECT_NEAR(at(column, 32), at(column, 33), 0.1 * at(column, 33)) << column << ' ' << sign;
+    }
+  }
 }
 
 // The Cornell box with a square of the texture for each face.
