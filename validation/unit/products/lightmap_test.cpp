@@ -162,16 +162,16 @@ Scene random_charts(Random& random, const Size& size) {
 
 TEST(Lightmap, TexelsShowThePointsThatASearchInRationalsFinds) {
   int searched = 0;
-  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 80; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    const Size size{random.integer(1, 24), random.one_in(2) ? 16 : random.integer(1, 24)};
+    const Size size{random.one_in(4) ? 49 : random.integer(1, 24), random.one_in(2) ? 16 : random.integer(1, 24)};
     const Scene scene = random_charts(random, size);
     if (!scene.has_texture()) continue;
     expect_as_searched(scene, {.size = size});
     ++searched;
   }
-  EXPECT_GT(searched, 70);
+  EXPECT_GT(searched, 60);
 }
 
 // A unit square as two triangles whose diagonal passes through the centres of texels, and a far copy of a huge one.
