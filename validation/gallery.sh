@@ -39,6 +39,9 @@ render emitters @emitters:n=9,size=0.1 --eye 9.8 2.4 9.8 --look 5 1 5 --fov 68 -
 render teapot @teapot:segments=16 --eye 3 -5.5 6.5 --look 0.4 0.1 1.1 --up 0 0 1 --fov 38 --size 1200x900 --exposure 22
 render forest @forest:n=400,trees=1,cover=0.12,light=sun --two-sided --eye 16 -13 8.4 --look 5.7 4.7 4.1 --up 0 0 1 --fov 47 \
   --size 1200x900
+map=(data/scenes/lightmap_room.obj --lightmap 512x512)
+"$program" render "${map[@]}" --method area-sampling:samples=16 -o "$cells/baked.exr"
+"$program" render "${map[@]}" --against "$cells/baked.exr" --strip -o "$out/lightmap_strip.png" --force
 "$program" view data/scenes/cornell_box.obj --at 240 0 300 --normal 0 1 0 --on floor --up 0 0 1 --plain \
   --svg "$out/cornell_box_view.svg" > /dev/null
 "$program" point @teapot:segments=8 --at -3 0.4 0 --normal 0 0 1 --on floor --source light --plain \

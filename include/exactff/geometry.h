@@ -14,6 +14,14 @@ struct Vec3 {
   friend bool operator==(const Vec3&, const Vec3&) = default;
 };
 
+// A point of a texture: u to the right, v upwards.
+struct TexturePoint {
+  double u = 0.0;
+  double v = 0.0;
+
+  friend bool operator==(const TexturePoint&, const TexturePoint&) = default;
+};
+
 // One value per colour channel: a reflectance (a pure number) or a radiosity (not a radiance: no factor pi).
 struct Rgb {
   double r = 0.0;

@@ -139,6 +139,70 @@ struct Hit {
 // as its normal, turned if the back was met, and with the face and its neighbours in the same surface as its own faces.
 [[nodiscard]] Receiver receiver_at(const Scene& scene, const Hit& hit);
 
+// ---------------------------------------------------------------------------------------------------------- lightmap
+
+// A picture in texture space: each texel has the light of the point of a face that its centre stands for.
+//
+// u grows with the columns, v against the rows: the centre of the texel in column i and row j, from 0, is u = (i + 1/2)
+// / width, v = 1 - (j + 1/2) / height, so row 0 is at v = 1. A face has its triangles in the texture: itself, or those
+// of triangulated() (scene.h). A centre lies in a triangle exactly, boundary included. Of several triangles that hold
+// it, the one of the lowest face counts, then the first of that face; so on an edge that two faces share, one of them.
+// The affine map of the triangle gives the point, each coordinate the nearest double to the exact one. A centre on the
+// boundary of its triangle stands for the point 2^-30 of the way from there to the triangle's centre: beside an edge
+// that faces form, roundings would else put it behind one of them. Coordinates outside of 0 to 1 lie outside of the
+// picture.
+struct Lightmap {
+  Size size;
+  int set = 0;                     // Scene::texture
+  std::vector<Selection> on = {};  // empty: all faces
+  int margin = 0;                  // so many texels around those of faces are copies of the nearest ones
+};
+
+// What texture coordinates are like, of the faces with area that a lightmap is of.
+struct Charts {
+  std::uint64_t faces = 0;        // with texture coordinates
+  std::uint64_t without = 0;      // without
+  std::uint64_t flat = 0;         // of `faces`: all triangles have no area in the texture
+  std::uint64_t outside = 0;      // of `faces`: with a corner outside of 0 to 1
+  std::uint64_t missed = 0;       // of `faces`: neither of these, and no texel shows them
+  std::uint64_t texels = 0;       // that show a face
+  std::uint64_t overlapping = 0;  // of `texels`: the centre is strictly inside of several triangles
+  std::optional<std::pair<FaceId, FaceId>> first_overlap =
+      {};  // at the first such texel found: which it shows, another
+
+  friend bool operator==(const Charts&, const Charts&) = default;
+};
+
+// The faces of texels. Refers to the scene.
+class Atlas {
+ public:
+  // Throws InputError for a size that is not from 1 to kLongestSide, a margin below 0, if none of the faces has
+  // texture coordinates, or if the picture would need too much memory; std::invalid_argument for a selection of another
+  // scene, and for another set.
+  Atlas(const Scene& scene, const Lightmap& lightmap);
+
+  [[nodiscard]] const Lightmap& lightmap() const { return lightmap_; }
+  [[nodiscard]] const Charts& charts() const { return charts_; }
+  // Counted from 0. Nothing for a texel that shows no face. receiver_at() makes it a receiver. Safe to call from
+  // several threads.
+  [[nodiscard]] std::optional<Hit> hit(int column, int row) const;
+
+ private:
+  struct Triangle {
+    FaceId face{};
+    std::array<std::uint32_t, 3> vertices{};
+    std::array<TexturePoint, 3> at{};
+  };
+  void take(FaceId face);
+  [[nodiscard]] bool fill(std::uint32_t triangle, std::vector<bool>& inside, std::vector<bool>& overlaps);
+
+  const Scene* scene_;
+  Lightmap lightmap_;
+  Charts charts_;
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint32_t> shown_;  // triangle of every texel, or kNone
+};
+
 // ----------------------------------------------------------------------------------------------------------- picture
 
 enum class Sides { kFront, kBoth };  // kBoth: the back of a face is lit as its front, but emits nothing
@@ -154,6 +218,9 @@ struct Request {
   const Scene* scene = nullptr;
   std::string scene_name = {};  // for metadata
   View view = {};
+  // Instead of the view. The layer A is 1 for texels that show a face and 0 for all others; `margin` counts the texels
+  // from there to one that is copied. Not for backs (Sides) and several points.
+  std::optional<Lightmap> lightmap = {};
   std::vector<Selection> sources = {};  // empty: every patch that emits, unless there is `sky`
   bool sky =
       false;  // one more source, with a radiosity of 1: all directions that meet nothing; not for methods, layers
@@ -197,9 +264,10 @@ struct Picture {
   // If a pixel has several points, 4 for each: the share of them that shows emitters, and the part of `values` that
   // comes from these. Estimates, for develop().
   std::vector<double> lamps;
-  std::vector<Layer> layers;        // on request
-  std::uint64_t not_certified = 0;  // points at which a channel reached the precision cap; their bounds are valid
-  double seconds = 0.0;             // processor time of all threads
+  std::vector<Layer> layers;          // on request
+  std::uint64_t not_certified = 0;    // points at which a channel reached the precision cap; their bounds are valid
+  double seconds = 0.0;               // processor time of all threads
+  std::optional<Charts> charts = {};  // of a lightmap
   std::vector<std::pair<std::string, std::string>> metadata;  // name and text, for image files
 
   [[nodiscard]] std::size_t pixels() const { return shows.size(); }

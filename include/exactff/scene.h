@@ -26,6 +26,9 @@ enum class MaterialId : std::uint32_t {};
 enum class SceneId : std::uint64_t {};
 inline constexpr SceneId kAnyScene{0};
 
+// A face may have two sets of texture coordinates, 0 and 1.
+inline constexpr int kTextureSets = 2;
+
 template <class Id>
 requires std::is_enum_v<Id>
 constexpr std::size_t index_of(Id id) { return static_cast<std::size_t>(id); }
@@ -133,6 +136,14 @@ class Scene {
   [[nodiscard]] const Face& face(FaceId id) const { return faces()[index_of(id)]; }
   [[nodiscard]] const Material& material(MaterialId id) const { return materials()[index_of(id)]; }
   [[nodiscard]] std::span<const Piece> pieces_of(FaceId id) const;
+
+  // Texture coordinates, for lightmaps (render.h): one for each corner of the face, through all rings in order; empty
+  // if the face has none in this set. No other value depends on them, nor does hash(). They are kept by all functions
+  // that change faces: new corners on an edge or in a face get coordinates between those of the ends of the cut on
+  // which they lie, in doubles. Where a face returns to a position, that position's first coordinates count for its
+  // parts. Throws std::invalid_argument for a face that the scene does not have, and for another set.
+  [[nodiscard]] std::span<const TexturePoint> texture(FaceId face, int set = 0) const;
+  [[nodiscard]] bool has_texture(int set = 0) const;  // of any face
 
   // The faces of a selection, without ignored and skipped ones.
   [[nodiscard]] std::vector<FaceId> faces_of(const Selection& selection) const;
@@ -245,6 +256,9 @@ class SceneBuilder {
   void mark_as_twin();
   // The normal that the file states for the face added last, of any length (Face::file_normals).
   void state_normal(const Vec3& normal);
+  // Texture coordinates of the face added last, one for each corner through all rings in order (Scene::texture); none
+  // if one of them is not finite. Throws std::invalid_argument for another number of them, or another set.
+  void state_texture(int set, std::vector<TexturePoint> corners);
   void warn(Problem warning);
   // The scene was read from this file, too (Scene::files).
   void read_from(std::filesystem::path file);

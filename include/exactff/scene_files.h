@@ -36,12 +36,13 @@ namespace exactff {
 
 // Reads Wavefront OBJ and MTL files.
 //
-// Read: v, f (v, v/vt, v//vn, v/vt/vn, negative indices, any number of vertices), g, o, usemtl, mtllib, continuation
-// lines, CRLF, comments. A patch is a group (g; in a file without g, an object o). A repeated name continues its patch.
-// Faces before any group belong to `default`. For `g a b` the first name counts, with a warning. Other OBJ statements,
-// which a form factor does not need (vt, s, p, l, ...), are ignored. MTL: Kd is the reflectance, Ke the radiosity.
-// Numbers are read with correct rounding. vn, d, Tr and illum affect no value; they are read for diagnoses
-// (Face::file_normals, Material::see_through).
+// Read: v, vt (Scene::texture, set 0), f (v, v/vt, v//vn, v/vt/vn, negative indices, any number of vertices), g, o,
+// usemtl, mtllib, continuation lines, CRLF, comments. A patch is a group (g; in a file without g, an object o). A
+// repeated name continues its patch. Faces before any group belong to `default`. For `g a b` the first name counts,
+// with a warning. A face with a vt that does not exist or is no number gets no texture coordinates, with a warning.
+// Other OBJ statements, which a form factor does not need (s, p, l, ...), are ignored. MTL: Kd is the reflectance, Ke
+// the radiosity. Numbers are read with correct rounding. vn, d, Tr and illum affect no value; they are read for
+// diagnoses (Face::file_normals, Material::see_through).
 //
 // An unknown material in usemtl and a missing MTL file cause a warning and give a default material (Kd 1, Ke 0). All
 // other errors are collected and thrown as one InputError with file:line.

@@ -325,3 +325,21 @@ def test_a_room_that_almost_closes_is_welded():
     assert welding.scene.gap() is None
     with pytest.raises(exactff.InputError):
         almost.welded(0.0)
+
+
+def test_lightmaps_have_receivers_at_texels(tmp_path):
+    (tmp_path / "s.obj").write_text("v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nvt 0 0\nvt 1 0\nvt 1 .5\n"
+                                    "vt 0 .5\ng floor\nf 1/1 2/2 3/3 4/4\ng lamp\nf 5 7 6\n")
+    scene = exactff.Scene.read(tmp_path / "s.obj")
+    assert scene.texture(0).tolist() == [[0, 0], [1, 0], [1, 0.5], [0, 0.5]] and scene.texture(1).shape == (0, 2)
+    lightmap = scene.lightmap(4, 4)
+    assert (lightmap.faces, lightmap.without, lightmap.overlapping) == (1, 1, 0)
+    assert lightmap.rows.tolist() == [2] * 4 + [3] * 4 and lightmap.columns.tolist() == [0, 1, 2, 3] * 2
+    r = lightmap.receivers
+    assert r.points[0].tolist() == [0.25, 1.5, 0] and r.ids[0] == "x0y2" and (r.on == 0).all()
+    image = np.zeros((4, 4))
+    image[lightmap.rows, lightmap.columns] = scene.form_factors(r.points, r.normals, "lamp", r.on)[:, 0]
+    assert image[3, 0] == scene.form_factor([0.25, 0.5, 0], [0, 0, 1], "lamp", on="floor").value > 0
+    for arguments in [dict(on="lamp"), dict(on=[]), dict(on="none"), dict(uv=1), dict(uv=2), dict(width=0)]:
+        with pytest.raises(exactff.InputError):
+            scene.lightmap(**{"width": 4, "height": 4, **arguments})

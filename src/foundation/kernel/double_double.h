@@ -28,7 +28,9 @@
 // product", SIAM J. Sci. Comput. 26 (2005).
 #pragma once
 
+#include <cmath>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 #include "kernel/reals.h"
@@ -221,6 +223,15 @@ EXACTFF_INLINE BasicBounded<Real> square_root(const BasicBounded<Real>& x) {
   const Real remainder = fused(-s, s, x.hi) + x.lo;
   return only_where(both(x.hi >= 0x1p-900, x.error <= kNegligible * x.hi),
                     bounded(fast_two_sum(s, remainder * half_inverse), x.error * half_inverse + 0x1p-103 * s));
+}
+
+// The double nearest to x if the error leaves no doubt. Adding a bound to x.lo is rounded to within u of the result,
+// which is far below the 2^-50 of x.lo and the share of the error that are added.
+inline std::optional<double> nearest(const Bounded& x) {
+  const double error = x.error * (1.0 + 0x1p-10) + 0x1p-50 * std::abs(x.lo);
+  const double low = x.hi + (x.lo - error), high = x.hi + (x.lo + error);
+  if (!std::isfinite(low) || low != high) return std::nullopt;
+  return low == 0.0 ? 0.0 : low;
 }
 
 }  // namespace exactff::kernel::double_double

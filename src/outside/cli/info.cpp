@@ -132,6 +132,13 @@ std::vector<std::string> numbered_names(const Scene& scene, FaceShape shape) {
   return names;
 }
 
+std::size_t textured_faces(const Scene& scene, int set) {
+  std::size_t count = 0;
+  for (std::size_t f = 0; f < scene.faces().size(); ++f)
+    count += scene.texture(static_cast<FaceId>(f), set).empty() ? 0 : 1;
+  return count;
+}
+
 void print_faces(const Scene& scene) {
   std::vector<std::string> other;
   for (const FaceId face : faces_of_shape(scene, FaceShape::kTriangulated)) {
@@ -145,6 +152,12 @@ void print_faces(const Scene& scene) {
   const std::size_t open = scene.open_edge_count();
   std::cout << "open edges: " << open
             << (open == 0 ? " (the surface is closed)" : " (an odd number of faces uses them)") << '\n';
+  for (int set = 0; set < kTextureSets; ++set) {
+    if (const std::size_t count = textured_faces(scene, set); count > 0) {
+      std::cout << "texture coordinates " << set << ": " << count << " of "
+                << counted(scene.faces().size(), "face", "faces") << '\n';
+    }
+  }
 }
 
 void print_gap(const Scene& scene, const flags::SceneArguments& arguments) {
@@ -263,6 +276,7 @@ void print_json(const Scene& scene, const flags::SceneArguments& arguments) {
   json["pieces"] = scene.pieces().size();
   json["area"] = total_area(rows);
   json["open_edges"] = scene.open_edge_count();
+  for (int set = 0; set < kTextureSets; ++set) json["textured_faces"].push_back(textured_faces(scene, set));
   json["gap"] = nullptr;
   if (const std::optional<Gap> found = gap(scene)) {
     json["gap"] = {

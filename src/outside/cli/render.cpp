@@ -147,10 +147,29 @@ void write_files(const RenderFiles& files, const Rendered& rendered) {
   write_whole_file(files.image, image);
 }
 
+// "12 faces; 3 have ...; 40 texels lie in several faces: ..."
+std::string words_of(const Scene& scene, const render::Charts& charts) {
+  std::string words = text::counted(charts.faces, "face");
+  const auto tell = [&](std::uint64_t count, const char* one, const char* several) {
+    if (count > 0) words += "; " + std::to_string(count) + ' ' + (count == 1 ? one : several);
+  };
+  tell(charts.without, "has no texture coordinates and is left out", "have no texture coordinates and are left out");
+  tell(charts.flat, "has no area in the texture", "have no area in the texture");
+  tell(charts.outside, "reaches beyond 0 to 1", "reach beyond 0 to 1");
+  tell(charts.missed, "is too small for a texel", "are too small for a texel");
+  if (!charts.first_overlap) return words;
+  const auto& [shown, other] = *charts.first_overlap;
+  tell(charts.overlapping, "texel lies", "texels lie");
+  return words + " in several triangles and shows the one of the lowest face, first of " + scene.name_of(shown) +
+         (other == shown ? ", which overlaps itself" : " and " + scene.name_of(other));
+}
+
 // The summary on standard output. `tell_camera`: the camera was chosen by the program.
-void print_rendered(const Rendered& rendered, const RenderFiles& files, const std::string& camera) {
+void print_rendered(const Scene& scene, const Rendered& rendered, const RenderFiles& files, const std::string& camera) {
   const render::Picture& picture = rendered.picture;
-  std::cout << picture.size.width << " x " << picture.size.height << " pixels: " << words_of_pixels(picture) << '\n';
+  std::cout << picture.size.width << " x " << picture.size.height << (picture.charts ? " texels: " : " pixels: ")
+            << words_of_pixels(picture) << '\n';
+  if (picture.charts) std::cout << "charts: " << text::printable(words_of(scene, *picture.charts)) << '\n';
   std::cout << "computed in " << took(picture) << " of processor time";
   if (rendered.judged && is_computed(*rendered.judged))
     std::cout << ", " << text::printable(rendered.judged_name) << " in " << took(*rendered.judged);
@@ -196,6 +215,13 @@ constexpr const char* kRenderFooter =
     "as\n"
     "for `exactff compare`: adaptive:eps_B=0.01,rays=16. --against also takes the picture of another program, of the\n"
     "same camera, size and --quantity: a .npy array (height, width, 3) or .exr.\n"
+    "With --lightmap WxH, IMAGE is in texture space, for scenes with texture coordinates: row 0 is at v = 1, the "
+    "centre\n"
+    "of column 0 at u = 0.5 / W. A texel whose centre lies in a face, decided exactly, has the irradiance (or\n"
+    "--quantity) at the point that the centre stands for; the others are 0. In EXR, the channel A is 1 for the former "
+    "and\n"
+    "0 for the latter; with --margin, `margin` is the distance in texels from where one was copied. --against FILE\n"
+    "compares with a baker's map.\n"
     "Until IMAGE is complete, finished tiles are kept in IMAGE.part. After an interruption, the same command with\n"
     "--resume continues from there. The numbers do not depend on threads or interruptions.\n"
     "Exit codes: 0 done, 2 bad input, 3 done but some pixels are not certified, 128 + signal when interrupted.\n"
@@ -204,7 +230,8 @@ constexpr const char* kRenderFooter =
     "  exactff render data/scenes/cornell_box.obj --eye 278 273 -800 --look 278 273 0 --fov 39.3 -o cornell.png\n"
     "  exactff render data/scenes/blinds_room.obj --against hemicube --strip -o blinds.png\n"
     "  exactff render data/scenes/blinds_room.obj --size 256x256 --against mine.npy -o errors.png\n"
-    "  exactff render data/scenes/cornell_box.obj --radiosity build/cells.csv --size 256x256 -o all_light.exr";
+    "  exactff render data/scenes/cornell_box.obj --radiosity build/cells.csv --size 256x256 -o all_light.exr\n"
+    "  exactff render room.obj --lightmap 512x512 --margin 2 --layers -o lightmap.exr";
 
 struct RenderArguments {
   flags::SceneArguments scene;
@@ -213,6 +240,9 @@ struct RenderArguments {
   flags::CameraArguments camera;
   std::optional<double> ortho;
   std::string size = "512x512";
+  std::string lightmap;  // its size
+  std::vector<std::string> on;
+  int uv = 0, margin = 0;
   int spp = 1;
   bool two_sided = false;
   std::string quantity;
@@ -233,13 +263,16 @@ struct RenderArguments {
   [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
 };
 
-render::Size size_of(const std::string& text) {
+std::string size_flag(const RenderArguments& args) { return args.lightmap.empty() ? "--size" : "--lightmap"; }
+
+render::Size size_of(const RenderArguments& args) {
+  const std::string& text = args.lightmap.empty() ? args.size : args.lightmap;
   const std::size_t cross = text.find('x');
   const auto width = flags::whole_number<int>(text.substr(0, cross));
   const auto height = cross == std::string::npos ? std::nullopt : flags::whole_number<int>(text.substr(cross + 1));
   if (width && height) return {*width, *height};
-  text::refuse("--size: " + text::in_quotes(text) + " is not a size", "a picture has a width and a height in pixels",
-               "write WIDTHxHEIGHT: --size 512x512");
+  text::refuse(size_flag(args) + ": " + text::in_quotes(text) + " is not a size",
+               "a picture has a width and a height in pixels", "write WIDTHxHEIGHT: " + size_flag(args) + " 512x512");
 }
 
 // The camera of --eye and --look.
@@ -257,7 +290,7 @@ render::Camera default_camera(const RenderArguments& args, const Scene& scene, c
 
 // What can be refused before the scene is read.
 void check_arguments(const RenderArguments& args) {
-  (void)size_of(args.size);
+  (void)size_of(args);
   (void)args.camera.is_placed();
   const render::ImageKind kind = render::image_kind(args.image);
   if (args.strip && args.against.empty()) {
@@ -292,14 +325,17 @@ struct Opponent {
   std::optional<render::Picture> picture = {};
 };
 
-Opponent opponent_named(const std::string& text, const render::Size& size) {
+Opponent opponent_named(const RenderArguments& args) {
+  const std::string& text = args.against;
   const std::string extension = text::in_lower_case(std::filesystem::path(text).extension().string());
   if (extension != ".npy" && extension != ".exr") return {.method = method_named(text)};
   render::Picture picture = render::read_picture(text);
+  const render::Size size = size_of(args);
   const auto words = [](const render::Size& one) { return fmt::format("{}x{}", one.width, one.height); };
   if (words(picture.size) != words(size)) {
     text::refuse(fs::path(text), fmt::format("has {} pixels, and the picture {}", words(picture.size), words(size)),
-                 "each pixel is compared with one of the same place", "give --size " + words(picture.size));
+                 "each pixel is compared with one of the same place",
+                 fmt::format("give {} {}", size_flag(args), words(picture.size)));
   }
   return {.picture = std::move(picture)};
 }
@@ -317,15 +353,22 @@ render::Request request_of(const RenderArguments& args, const flags::LitScene& l
   request.radiosities = lit.radiosities;
   request.scene_name = args.scene.from_standard_input() ? std::string(flags::kStandardInput)
                                                         : std::filesystem::path(args.scene.path).filename().string();
-  const render::Size size = size_of(args.size);
-  request.view =
-      render::View(args.camera.is_placed() ? placed_camera(args, scene) : default_camera(args, scene, size), size);
+  const render::Size size = size_of(args);
+  if (!args.lightmap.empty()) {
+    request.lightmap = {size, args.uv, {}, args.margin};
+    if (!args.on.empty()) request.lightmap->on = flags::selections_named(scene, args.on);
+  } else {
+    request.view =
+        render::View(args.camera.is_placed() ? placed_camera(args, scene) : default_camera(args, scene, size), size);
+  }
   flags::SourcesUnderSky sources = flags::sources_under_sky(args.sources, scene);
   request.sources = std::move(sources.sources);
   request.sky = sources.sky;
   request.method = std::move(method);
   request.measure = args.measure.measure(args.camera.up, args.sphere);
-  const Quantity usual = request.measure.is_form_factor() ? Quantity::kRadiance : Quantity::kFormFactor;
+  const Quantity usual = !request.measure.is_form_factor() ? Quantity::kFormFactor
+                         : request.lightmap                ? Quantity::kIrradiance
+                                                           : Quantity::kRadiance;
   request.quantity = quantity_named(args.quantity).value_or(usual);
   if (args.quantity == "gradient") request.shown = render::Shown::kSlope;
   request.ke = args.ke == "radiance" ? KeMeans::kRadiance : KeMeans::kRadiosity;
@@ -341,7 +384,7 @@ render::Request request_of(const RenderArguments& args, const flags::LitScene& l
 // What the program has chosen; empty if that is nothing.
 std::string words_of_camera(const RenderArguments& args, const render::View& view) {
   const bool chose_up = !flags::is_given(args.camera.up);
-  if (args.camera.is_placed() && !chose_up) return {};
+  if (!args.lightmap.empty() || (args.camera.is_placed() && !chose_up)) return {};
   const bool is_z = chose_up && view.camera().up == Vec3{0, 0, 1};
   return render::flags_of(view) +
          (is_z ? " (z points upwards, since more area of fronts looks along +z than along +y)" : "");
@@ -411,7 +454,7 @@ Rendered render_pictures(const render::Request& request, const Opponent& against
 int run(const RenderArguments& args) {
   check_arguments(args);
   const auto method = method_named(args.method);
-  const Opponent against = opponent_named(args.against, size_of(args.size));
+  const Opponent against = opponent_named(args);
   const flags::LitScene lit = with_progress([&] { return flags::load(args.scene, args.solution); });
   const Scene& scene = lit.scene;
   print_warnings(scene.warnings());
@@ -437,7 +480,7 @@ int run(const RenderArguments& args) {
     return 128 + interrupting_signal();
   }
   kept.done();
-  print_rendered(result, files, words_of_camera(args, request.view));
+  print_rendered(scene, result, files, words_of_camera(args, request.view));
   check_output(std::cout);
   return warn_of_uncertified_points(result);
 }
@@ -456,14 +499,34 @@ void add_camera_flags(CLI::App& app, RenderArguments& args) {
       ->capture_default_str();
 }
 
+void add_lightmap_flags(CLI::App& app, RenderArguments& args) {
+  CLI::Option* lightmap =
+      app.add_option("--lightmap", args.lightmap,
+                     "Instead of a camera's picture, one in texture space: each texel has the light of the point of a "
+                     "face that its centre stands for, by the file's texture coordinates (vt)")
+          ->type_name("WxH");
+  for (const char* flag : {"--size", "--eye", "--look", "--fov", "--ortho", "--spp"})
+    lightmap->excludes(app.get_option(flag));
+  flags::add_names(app, "--on", args.on, "Lightmap: only of these patches or faces");
+  app.add_option("--uv", args.uv, "Lightmap: which set of texture coordinates; files of OBJ have set 0")
+      ->check(CLI::Range(0, kTextureSets - 1))
+      ->type_name("0|1")
+      ->capture_default_str();
+  app.add_option("--margin", args.margin, "Lightmap: copy texels at the edges of faces so many texels outwards")
+      ->check(CLI::Range(0, render::kLongestSide))
+      ->type_name("N")
+      ->capture_default_str();
+  for (const char* flag : {"--on", "--uv", "--margin"}) app.get_option(flag)->needs(lightmap);
+}
+
 void add_value_flags(CLI::App& app, RenderArguments& args) {
   app.add_flag("--two-sided", args.two_sided, "Light the backs of faces, too, instead of showing them black");
   args.measure.add_to(app);
   app.add_flag("--sphere", args.sphere, "Of a small sphere at the point, which sees both sides of the face");
   app.add_option("--quantity", args.quantity,
                  "What a pixel holds: the radiance B / pi, the radiosity B, the irradiance, the sum of form factors, "
-                 "or the length of its gradient along the surface (default: radiance; form-factor with --measure or "
-                 "--sphere, which then is the sum of that measure)")
+                 "or the length of its gradient along the surface (default: radiance, of a lightmap irradiance; "
+                 "form-factor with --measure or --sphere, which then is the sum of that measure)")
       ->check(CLI::IsMember({"radiance", "radiosity", "irradiance", "form-factor", "gradient"}));
   app.add_option("--ke", args.ke, "What Ke means in the scene")
       ->check(CLI::IsMember({"radiosity", "radiance"}))
@@ -501,6 +564,7 @@ Command add_render(CLI::App& app) {
   args->scene.add_divide_to(*command);
   args->solution.add_to(*command);
   add_camera_flags(*command, *args);
+  add_lightmap_flags(*command, *args);
   flags::add_source_options_under_sky(*command, args->sources);
   add_value_flags(*command, *args);
   add_output_flags(*command, *args);

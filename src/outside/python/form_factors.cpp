@@ -5,7 +5,9 @@
 
 #include "exactff/methods.h"
 #include "exactff/receiver.h"
+#include "exactff/render.h"
 #include "flags/scene.h"
+#include "kernel/poll.h"
 #include "python/bindings.h"
 #include "report/pictures.h"
 #include "truth/unit_normal.h"
@@ -426,6 +428,34 @@ std::vector<std::string> misses(const SharedScene& scene, const Numbers& points,
   return interrupt.run([&] { return sentences(near_misses(scene.scene(), list), list.size()); });
 }
 
+// The receivers of texels that show a face, their rows and columns, and the counts of Charts.
+py::tuple of_lightmap(const SharedScene& scene, int width, int height, int set, const std::vector<std::string>& names,
+                      bool all) {
+  render::Lightmap map{{width, height}, set, {}, 0};
+  if (!all) map.on = scene.selections(names);
+  auto list = std::make_shared<List>();
+  std::vector<std::int64_t> places;
+  Interrupt interrupt;
+  const render::Charts charts = interrupt.run([&] {
+    const render::Atlas atlas(scene.scene(), map);
+    for (int row = 0; row < height; ++row) {
+      kernel::poll();
+      for (int column = 0; column < width; ++column) {
+        const std::optional<render::Hit> hit = atlas.hit(column, row);
+        if (!hit) continue;
+        list->push_back(render::receiver_at(scene.scene(), *hit));
+        list->back().id = "x" + std::to_string(column) + "y" + std::to_string(row);
+        places.insert(places.end(), {row, column});
+      }
+    }
+    return atlas.charts();
+  });
+  Integers rows({static_cast<py::ssize_t>(list->size()), py::ssize_t{2}});
+  std::ranges::copy(places, rows.mutable_data());
+  return py::make_tuple(list, rows, charts.faces, charts.without, charts.flat, charts.outside, charts.missed,
+                        charts.overlapping);
+}
+
 }  // namespace
 
 void bind_receivers(py::module_& module) {
@@ -434,6 +464,8 @@ void bind_receivers(py::module_& module) {
                   py::arg("centres"), py::arg("samples"), py::arg("seed"), py::arg("per_face"))
       .def_static("from_arrays", &from_arrays, py::arg("points"), py::arg("normals"), py::arg("on"), py::arg("ids"))
       .def_static("read", &read_csv, py::arg("scene"), py::arg("path"))
+      .def_static("of_lightmap", &of_lightmap, py::arg("scene"), py::arg("width"), py::arg("height"), py::arg("set"),
+                  py::arg("names"), py::arg("all"))
       .def("__len__", [](const List& list) { return list.size(); })
       .def("points", [](const List& list) { return rows_of(list, &Receiver::point); })
       .def("normals", [](const List& list) { return rows_of(list, &Receiver::normal); })

@@ -298,6 +298,19 @@ void bind_scene(py::module_& module) {
           "rings",
           [](const SharedScene& s, std::int64_t face) { return s.scene().face(face_at(s.scene(), face)).rings; },
           py::arg("face"))
+      .def(
+          "texture",
+          [](const SharedScene& s, std::int64_t face, int set) {
+            const auto points = s.scene().texture(face_at(s.scene(), face), set);
+            Numbers result({static_cast<py::ssize_t>(points.size()), py::ssize_t{2}});
+            double* out = result.mutable_data();
+            for (const TexturePoint& p : points) {
+              *out++ = p.u;
+              *out++ = p.v;
+            }
+            return result;
+          },
+          py::arg("face"), py::arg("set"))
       .def("face_count", [](const SharedScene& s) { return s.scene().faces().size(); })
       .def("piece_count", [](const SharedScene& s) { return s.scene().pieces().size(); })
       .def(

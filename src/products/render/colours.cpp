@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -220,7 +221,11 @@ Picture difference(const Picture& judged, const Picture& truth) {
   picture.metadata = judged.metadata;
   picture.metadata.emplace_back("difference", "this method minus " + method_of(truth));
   picture.values.reserve(truth.values.size());
-  for (std::size_t i = 0; i < truth.values.size(); ++i) picture.values.push_back(judged.values[i] - truth.values[i]);
+  for (std::size_t i = 0; i < truth.values.size(); ++i) {
+    picture.values.push_back(truth.shows[i / 3] == Shows::kNothing ? kNaN : judged.values[i] - truth.values[i]);
+  }
+  std::ranges::copy_if(truth.layers, std::back_inserter(picture.layers),
+                       [](const Layer& layer) { return layer.name == "A"; });  // of a lightmap
   return picture;
 }
 

@@ -221,15 +221,6 @@ Bounded Search::fine_depth(const Piece& piece) const {
   return numerator / denominator;
 }
 
-// The double nearest to x if the error leaves no doubt. Adding a bound to x.lo is rounded to within u of the result,
-// which is far below the 2^-50 of x.lo and the share of the error that are added.
-std::optional<double> nearest(const Bounded& x) {
-  const double error = x.error * (1.0 + 0x1p-10) + 0x1p-50 * std::abs(x.lo);
-  const double low = x.hi + (x.lo - error), high = x.hi + (x.lo + error);
-  if (!std::isfinite(low) || low != high) return std::nullopt;
-  return low == 0.0 ? 0.0 : low;
-}
-
 Vec3 Search::point_on(const Piece& piece) const {
   const Vec3 &p = corner(piece.frame[0]), &q = corner(piece.frame[1]), &r = corner(piece.frame[2]);
   const Bounded t = fine_depth(piece);
@@ -243,7 +234,7 @@ Vec3 Search::point_on(const Piece& piece) const {
       point[axis] = at;
       continue;
     }
-    if (const auto quick = nearest(exact_bounded({from, 0.0}) + slope * t)) {
+    if (const auto quick = kernel::double_double::nearest(exact_bounded({from, 0.0}) + slope * t)) {
       point[axis] = *quick;
       continue;
     }

@@ -15,6 +15,10 @@ namespace exactff::render {
 
 Job::Job(const Request& request) : request_(request) {
   require_scene(request_.scene);
+  if (request_.lightmap) {
+    require_possible_lightmap();
+    atlas_ = std::make_unique<const Atlas>(*request_.scene, *request_.lightmap);
+  }
   if (request_.radiosities) {
     take_radiosities();
   } else {
@@ -72,6 +76,15 @@ void Job::require_light_of_patches() const {
   }
 }
 
+void Job::require_possible_lightmap() const {
+  if (request_.sides == Sides::kFront && request_.spp == 1) return;
+  text::refuse(request_.spp == 1 ? "a lightmap of both sides of faces is requested"
+                                 : "a lightmap with several points in a texel is requested",
+               request_.spp == 1 ? "a texel shows the front of its face" : "a texel shows the point of its centre",
+               request_.spp == 1 ? "leave out --two-sided; make the backs faces of their own if they need texels"
+                                 : "leave out --spp, or make the lightmap larger");
+}
+
 void Job::require_possible() const {
   constexpr double kMostBytes = 8e9;
   if (request_.spp < 1 || request_.spp > 64) {
@@ -107,7 +120,7 @@ void Job::require_possible() const {
                  "it is computed exactly, for patches, and its components are layers of their own",
                  "leave out --method, --against METHOD, sky, --layers and --bounds");
   }
-  const Size& size = request_.view.size();
+  const Size& size = this->size();
   const double bytes = 8.0 * size.width * size.height * static_cast<double>(numbers_per_pixel());
   if (bytes <= kMostBytes) return;
   text::refuse("the picture needs " + text::rounded(bytes / 1e9) + " GB of memory",
@@ -142,9 +155,9 @@ std::vector<Layer> Job::layers() const {
     layers.push_back({"visible." + name, true, {}});
     layers.push_back({"fraction." + name, false, {}});
   }
-  for (const char* name : {"position.X", "position.Y", "position.Z", "normal.X", "normal.Y", "normal.Z", "distance"}) {
+  for (const char* name : {"position.X", "position.Y", "position.Z", "normal.X", "normal.Y", "normal.Z"})
     layers.push_back({name, false, {}});
-  }
+  if (!atlas_) layers.push_back({"distance", false, {}});
   for (const char* name : {"id.face", "id.patch"}) layers.push_back({name, true, {}});
   return layers;
 }
@@ -188,7 +201,8 @@ Metadata Job::metadata() const {
       {"software", text::program_version()},
       {"scene", text::printable(request_.scene_name)},
       {"scene hash", scene.hash()},
-      {"camera", flags_of(request_.view)},
+      atlas_ ? std::pair<std::string, std::string>{"lightmap", words_of(scene, *request_.lightmap)}
+             : std::pair<std::string, std::string>{"camera", flags_of(request_.view)},
       {"quantity", slope ? "slope of the form factors along the surface, per unit of length"
                    : !request_.measure.is_form_factor()
                        ? words_of_measure(request_.measure)
@@ -243,8 +257,9 @@ std::string words_of_measure(const Measure& measure) {
 }
 
 std::string identity_of(const Request& request, const std::optional<methods::Choice>& against) {
-  std::string all =
-      request.scene->hash() + '\n' + flags_of(request.view) + '\n' + std::string(to_string(request.quantity)) + '\n';
+  std::string all = request.scene->hash() + '\n' +
+                    (request.lightmap ? words_of(*request.scene, *request.lightmap) : flags_of(request.view)) + '\n' +
+                    std::string(to_string(request.quantity)) + '\n';
   if (!request.measure.is_form_factor()) all += words_of_measure(request.measure) + '\n';
   for (const Selection& source : request.sources) all += request.scene->name_of(source) + '\n';
   if (request.sky) all += "and the sky\n";

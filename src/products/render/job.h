@@ -20,7 +20,9 @@ class Job {
   explicit Job(const Request& request);
 
   [[nodiscard]] const Request& request() const { return request_; }
-  [[nodiscard]] std::vector<Layer> layers() const;  // without values
+  [[nodiscard]] const Size& size() const { return atlas_ ? atlas_->lightmap().size : request_.view.size(); }
+  [[nodiscard]] const Atlas* atlas() const { return atlas_.get(); }  // of a lightmap
+  [[nodiscard]] std::vector<Layer> layers() const;                   // without values
   [[nodiscard]] Metadata metadata() const;
   // Of everything that the numbers depend on.
   [[nodiscard]] std::string hash() const;
@@ -46,10 +48,12 @@ class Job {
   void take_radiosities();
   void require_possible() const;
   void require_light_of_patches() const;
+  void require_possible_lightmap() const;
   [[nodiscard]] std::vector<std::string> source_names() const;  // of channels
   [[nodiscard]] std::string names_of_sources() const;
 
   Request request_;
+  std::unique_ptr<const Atlas> atlas_;
   std::vector<Selection> sources_;
   std::vector<Rgb> weights_;
   std::unique_ptr<const whole_view::SourceFactors> factors_;
@@ -71,13 +75,14 @@ class Painter {
  public:
   explicit Painter(const Job& job);
 
-  void look_along(const Ray& ray, Sample& sample);
+  // Column and row as for View::ray, of a lightmap those of a texel's centre.
+  void look_at(double column, double row, Sample& sample);
 
  private:
   [[nodiscard]] whole_view::Channels light_at(const Receiver& receiver, const whole_view::LightFormula& formula);
   [[nodiscard]] whole_view::Channels light_by_method(const Receiver& receiver, const whole_view::LightFormula& formula);
   void add_slope(const Hit* hit, bool dark, Sample& sample);
-  void add_layers(const Ray& ray, const Hit* hit, bool dark, Sample& sample) const;
+  void add_layers(const Vec3& eye, const Hit* hit, bool dark, Sample& sample) const;
 
   const Job& job_;
   ExactOptions options_;
@@ -89,6 +94,8 @@ class Painter {
 
 // --- Which picture unfinished tiles belong to ---
 
+// With a hash of the texture coordinates. Those of a set that does not exist throw std::invalid_argument.
+[[nodiscard]] std::string words_of(const Scene& scene, const Lightmap& lightmap);
 // "overcast, up 0 0 1".
 [[nodiscard]] std::string words_of_measure(const Measure& measure);
 

@@ -98,7 +98,7 @@ class Brush {
   }
 
   void look(double column, double row, TileResult& result) {
-    painter_.look_along(job_.request().view.ray(column, row), sample_);
+    painter_.look_at(column, row, sample_);
     if (!sample_.certified) ++result.not_certified;
   }
 
@@ -167,7 +167,7 @@ class Brushes {
 };
 
 Picture empty_picture(const Job& job) {
-  const Size size = job.request().view.size();
+  const Size size = job.size();
   const std::size_t pixels = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
   Picture picture;
   picture.size = size;
@@ -214,6 +214,46 @@ void add_bounds_as_layers(Picture& picture) {
   add("upper", picture.upper);
 }
 
+// --- Lightmaps ---
+
+void add_alpha(Picture& picture) {
+  Layer& alpha = picture.layers.emplace_back(Layer{"A", false, {}});
+  for (const Shows shows : picture.shows) alpha.values.push_back(shows == Shows::kNothing ? 0.0 : 1.0);
+}
+
+// A texel is copied from one beside it that has a value already: left, right, above, below, then diagonally.
+void add_margin(int width, Picture& picture) {
+  if (width == 0) return;
+  constexpr std::array<std::array<int, 2>, 8> kBeside = {
+      {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
+  Layer& margin = picture.layers.emplace_back(Layer{"margin", true, std::vector<double>(picture.pixels())});
+  const auto texel = [&](int column, int row) {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.size.width) +
+           static_cast<std::size_t>(column);
+  };
+  const auto has_value = [&](std::size_t i) { return picture.shows[i] != Shows::kNothing || margin.values[i] > 0.0; };
+  std::vector<std::array<std::size_t, 2>> copied(1);  // from, to
+  for (int step = 1; step <= width && !copied.empty(); ++step) {
+    copied.clear();
+    for (int row = 0; row < picture.size.height; ++row) {
+      for (int column = 0; column < picture.size.width; ++column) {
+        if (has_value(texel(column, row))) continue;
+        for (const auto& [right, down] : kBeside) {
+          const int x = column + right, y = row + down;
+          if (x < 0 || y < 0 || x >= picture.size.width || y >= picture.size.height || !has_value(texel(x, y)))
+            continue;
+          copied.push_back({texel(x, y), texel(column, row)});
+          break;
+        }
+      }
+    }
+    for (const auto& [from, to] : copied) {
+      std::copy_n(&picture.values[3 * from], 3, &picture.values[3 * to]);
+      margin.values[to] = step;
+    }
+  }
+}
+
 }  // namespace
 
 Picture render(const Request& request, const Hooks& hooks, jobs::Journal* journal) {
@@ -240,6 +280,11 @@ Picture render(const Request& request, const Hooks& hooks, jobs::Journal* journa
     picture.seconds += result.seconds;
   });
   if (request.radiosities && request.bounds == Bounds::kAll) add_bounds_as_layers(picture);
+  if (const Atlas* atlas = job.atlas()) {
+    picture.charts = atlas->charts();
+    add_alpha(picture);
+    add_margin(atlas->lightmap().margin, picture);
+  }
   return picture;
 }
 
@@ -275,9 +320,12 @@ Painter::Painter(const Job& job) : job_(job) {
   estimates_.resize(job.source_count());
 }
 
-void Painter::look_along(const Ray& ray, Sample& sample) {
+void Painter::look_at(double column, double row, Sample& sample) {
   const Request& request = job_.request();
-  const std::optional<Hit> hit = first_hit(*request.scene, ray);
+  const Atlas* atlas = job_.atlas();
+  const Ray ray = atlas != nullptr ? Ray{} : request.view.ray(column, row);
+  const std::optional<Hit> hit =
+      atlas != nullptr ? atlas->hit(static_cast<int>(column), static_cast<int>(row)) : first_hit(*request.scene, ray);
   const bool black = !hit || (hit->back && request.sides == Sides::kFront);
   Shows shows = !hit ? Shows::kNothing : black ? Shows::kBack : Shows::kFace;
   if (request.shown == Shown::kSlope) {
@@ -298,7 +346,7 @@ void Painter::look_along(const Ray& ray, Sample& sample) {
     for (const auto& channel : channels) sample.numbers.push_back(channel.upper);
   }
   sample.certified = std::ranges::all_of(channels, &whole_view::CertifiedNumber::certified);
-  if (request.layers == Layers::kAll) add_layers(ray, hit ? &*hit : nullptr, black, sample);
+  if (request.layers == Layers::kAll) add_layers(ray.origin, hit ? &*hit : nullptr, black, sample);
 }
 
 whole_view::Channels Painter::light_at(const Receiver& receiver, const whole_view::LightFormula& formula) {
@@ -350,7 +398,7 @@ void Painter::add_slope(const Hit* hit, bool dark, Sample& sample) {
   sample.numbers.insert(sample.numbers.end(), {slope, slope, slope, along.x, along.y, along.z, kink ? 1.0 : 0.0});
 }
 
-void Painter::add_layers(const Ray& ray, const Hit* hit, bool dark, Sample& sample) const {
+void Painter::add_layers(const Vec3& eye, const Hit* hit, bool dark, Sample& sample) const {
   std::vector<double>& numbers = sample.numbers;
   for (std::size_t s = 0; s < job_.source_count(); ++s) {
     if (dark) {
@@ -361,15 +409,16 @@ void Painter::add_layers(const Ray& ray, const Hit* hit, bool dark, Sample& samp
     }
   }
   if (hit == nullptr) {
-    numbers.insert(numbers.end(), 9, 0.0);
+    numbers.insert(numbers.end(), job_.atlas() != nullptr ? 8 : 9, 0.0);
     return;
   }
   const Scene& scene = *job_.request().scene;
   const Receiver receiver = receiver_at(scene, *hit);
   const Vec3 &point = receiver.point, normal = unit_length(receiver.normal);
-  numbers.insert(numbers.end(), {point.x, point.y, point.z, normal.x, normal.y, normal.z,
-                                 kernel::distance(point, ray.origin), static_cast<double>(index_of(hit->face) + 1),
-                                 static_cast<double>(index_of(scene.face(hit->face).patch) + 1)});
+  numbers.insert(numbers.end(), {point.x, point.y, point.z, normal.x, normal.y, normal.z});
+  if (job_.atlas() == nullptr) numbers.push_back(kernel::distance(point, eye));
+  for (const std::size_t id : {index_of(hit->face), index_of(scene.face(hit->face).patch)})
+    numbers.push_back(static_cast<double>(id + 1));
 }
 
 }  // namespace exactff::render

@@ -1,5 +1,6 @@
 // A scene cut into cells, each a patch.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -53,11 +54,22 @@ class CutPoints {
   // first by x, then y, then z.
   std::vector<std::uint32_t> between(std::uint32_t a, std::uint32_t b);
 
+  // Of a new vertex: it lies between these, at this share of the way.
+  struct Origin {
+    std::uint32_t from = 0, to = 0;
+    double share = 0.0;
+  };
+  [[nodiscard]] const Origin* origin(std::uint32_t vertex) const {
+    const std::size_t before = vertices_.size() - origins_.size();
+    return vertex < before ? nullptr : &origins_[vertex - before];
+  }
+
   // The largest distance of a point made by between() from its exact place.
   [[nodiscard]] double largest_displacement() const { return largest_displacement_; }
 
  private:
   std::vector<Vec3> vertices_;
+  std::vector<Origin> origins_;  // of the last vertices
   double length_;
   double largest_displacement_ = 0.0;
 };
@@ -109,6 +121,7 @@ std::vector<std::uint32_t> CutPoints::between(std::uint32_t a, std::uint32_t b) 
     largest_displacement_ = std::max(largest_displacement_, root_of(dot(off, off)));
     made.push_back(static_cast<std::uint32_t>(vertices_.size()));
     vertices_.push_back(rounded);
+    origins_.push_back({turned ? b : a, turned ? a : b, static_cast<double>(k) / static_cast<double>(n)});
   }
   if (turned) std::ranges::reverse(made);
   return made;
@@ -559,6 +572,34 @@ class Division {
     return builder;
   }
 
+  // Of a corner of a cell of this face. A vertex that neither was made nor is a corner of the face is one of another
+  // face, on an edge of the face's pieces.
+  TexturePoint texture_point(const FaceTexture& texture, FaceId face, std::uint32_t v) {
+    std::map<std::uint32_t, TexturePoint>& known = known_[texture_set(texture.set())];
+    const CutPoints::Origin* origin = points_.origin(v);
+    if (origin == nullptr) v = places(scene_)[v];
+    if (const TexturePoint* corner = texture.find(v)) return *corner;
+    if (const auto found = known.find(v); found != known.end()) return found->second;
+    const CutPoints::Origin made = origin != nullptr ? *origin : place_on_edge(face, v);
+    const TexturePoint from = texture_point(texture, face, made.from);
+    return known[v] = between(from, texture_point(texture, face, made.to), made.share);
+  }
+
+  [[nodiscard]] CutPoints::Origin place_on_edge(FaceId face, std::uint32_t v) const {
+    for (const Piece& piece : scene_.pieces_of(face)) {
+      const std::span<const std::uint32_t> corners = scene_.corners(piece);
+      for (std::size_t c = 0; c < corners.size(); ++c) {
+        std::uint32_t a = corners[c], b = corners[(c + 1) % corners.size()];
+        if (comes_before(points_[b], points_[a])) std::swap(a, b);
+        if (comes_before(points_[v], points_[a]) || comes_before(points_[b], points_[v])) continue;
+        if (!are_straight(points_[a], points_[v], points_[b])) continue;
+        const double whole = kernel::distance(points_[a], points_[b]);
+        return {a, b, kernel::distance(points_[a], points_[v]) / whole};
+      }
+    }
+    return {scene_.corners(scene_.pieces_of(face).front())[0], scene_.corners(scene_.pieces_of(face).front())[0], 0.0};
+  }
+
   void add(SceneBuilder& builder, const std::string& name, const Cell& cell) {
     const Face& face = scene_.face(cell.face);
     Rings rings = cell.rings;
@@ -569,13 +610,18 @@ class Division {
       for (auto& ring : rings) std::ranges::reverse(ring);
       flipped_.push_back(selection);
     }
-    builder.add_face(patch, face.material, std::move(rings), face.line);
+    builder.add_face(patch, face.material, rings, face.line);
+    if (std::exchange(textured_, cell.face) != cell.face) known_ = {};
+    copy_texture(scene_, cell.face, rings, builder,
+                 [&](const FaceTexture& texture, std::uint32_t v) { return texture_point(texture, cell.face, v); });
   }
 
   const Scene& scene_;
   CutPoints points_;
   EdgeCuts cuts_;
   std::vector<Selection> transparent_, flipped_;
+  std::optional<FaceId> textured_;  // the face of the texture coordinates below
+  std::array<std::map<std::uint32_t, TexturePoint>, kTextureSets> known_;
   std::size_t added_ = 0, faces_cut_ = 0;
   double largest_distance_ = 0.0;
 };

@@ -19,7 +19,6 @@
 #include "exactff/scene_files.h"
 #include "formats/mesh_input.h"
 #include "formats/mtl_reader.h"
-#include "formats/writers.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
 #include "scene/scene.h"
@@ -35,6 +34,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kDefaultPatch = "default";
 constexpr std::string_view kNoMaterial = "(none)";
+constexpr std::uint32_t kNoTexture = std::numeric_limits<std::uint32_t>::max(), kBadTexture = kNoTexture - 1;
 constexpr std::size_t kMostIndices = std::numeric_limits<std::uint32_t>::max();
 
 // Distinct names in the order of their first use, in UTF-8.
@@ -84,11 +84,11 @@ struct Tally {
 
 bool is_passed_over(std::string_view keyword) {
   static constexpr std::array kWords = {
-      std::string_view("vt"),         std::string_view("vp"),        std::string_view("p"),
-      std::string_view("l"),          std::string_view("s"),         std::string_view("mg"),
-      std::string_view("lod"),        std::string_view("usemap"),    std::string_view("maplib"),
-      std::string_view("shadow_obj"), std::string_view("trace_obj"), std::string_view("bevel"),
-      std::string_view("c_interp"),   std::string_view("d_interp")};
+      std::string_view("vp"),        std::string_view("p"),      std::string_view("l"),
+      std::string_view("s"),         std::string_view("mg"),     std::string_view("lod"),
+      std::string_view("usemap"),    std::string_view("maplib"), std::string_view("shadow_obj"),
+      std::string_view("trace_obj"), std::string_view("bevel"),  std::string_view("c_interp"),
+      std::string_view("d_interp")};
   return std::find(kWords.begin(), kWords.end(), keyword) != kWords.end();
 }
 
@@ -104,6 +104,8 @@ class ObjReader {
   void read_vertex(std::string_view values);
   std::array<double, 3> read_coordinates(std::string_view values);
   void read_normal(std::string_view values);
+  void read_texture(std::string_view values);
+  void note_texture_of(std::string_view corner);
   void add_normal_of(std::string_view corner, Vec3& sum) const;
   void read_face(std::string_view corners);
   std::optional<std::uint32_t> read_corner(std::string_view corner);
@@ -119,6 +121,7 @@ class ObjReader {
   std::vector<fs::path> library_paths(std::string_view names) const;
   void add_materials();
   void add_faces();
+  void add_texture_of(const ObjFace& face);
 
   void fail(std::string what, std::string why, std::string suggestion) {
     problems_.add({file_, line_.number, std::move(what), std::move(why), std::move(suggestion)});
@@ -137,6 +140,8 @@ class ObjReader {
 
   std::vector<ObjFace> faces_;
   std::vector<std::uint32_t> corners_;                      // of all faces
+  std::vector<TexturePoint> textures_;                      // vt; NaN if it cannot be read
+  std::vector<std::uint32_t> texture_corners_;              // of the corners up to the last one with vt; kNoTexture
   std::vector<Vec3> normals_;                               // vn
   std::vector<std::pair<std::size_t, Vec3>> face_normals_;  // index into faces_, sum over its corners; by face
   NameTable groups_{kDefaultPatch};
@@ -152,6 +157,7 @@ class ObjReader {
   Tally several_groups_;
   Tally unread_geometry_;
   Tally unknown_;
+  Tally without_texture_;
 };
 
 Scene ObjReader::run() {
@@ -179,6 +185,7 @@ void ObjReader::read_line() {
   if (keyword.empty() || is_passed_over(keyword)) return;
   if (keyword == "v") return read_vertex(rest);
   if (keyword == "vn") return read_normal(rest);
+  if (keyword == "vt") return read_texture(rest);
   if (keyword == "f" || keyword == "fo") return read_face(rest);
   if (keyword == "g") return read_group(rest);
   if (keyword == "o") {
@@ -246,6 +253,18 @@ void ObjReader::read_normal(std::string_view values) {
   normals_.push_back({xyz[0], xyz[1], xyz[2]});
 }
 
+// A lone number is u; v is 0 then. No form factor depends on them, so an unreadable one is no problem.
+void ObjReader::read_texture(std::string_view values) {
+  values = before_comment(values);
+  TexturePoint point;
+  const text::ParsedNumber u = text::parse_number(text::take_word(values));
+  const std::string_view second = text::take_word(values);
+  const text::ParsedNumber v = text::parse_number(second.empty() ? "0" : second);
+  const bool sound = u.fault == text::NumberFault::kNone && v.fault == text::NumberFault::kNone;
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  textures_.push_back(sound ? TexturePoint{u.value, v.value} : TexturePoint{kNaN, kNaN});
+}
+
 void ObjReader::read_face(std::string_view corners) {
   ObjFace face = current_;
   face.line = line_.number;
@@ -257,6 +276,7 @@ void ObjReader::read_face(std::string_view corners) {
     const std::optional<std::uint32_t> corner = read_corner(word);
     sound = sound && corner;
     if (corner) corners_.push_back(*corner);
+    if (corner) note_texture_of(word);
     if (corner && !normals_.empty()) add_normal_of(word, normal);
   }
   if (normal != Vec3{}) face_normals_.emplace_back(faces_.size(), normal);
@@ -298,6 +318,20 @@ bool well_formed_tail(std::string_view tail) {
 }
 
 }  // namespace
+
+// The second number of a corner. It may refer to a vt further down.
+void ObjReader::note_texture_of(std::string_view corner) {
+  const std::size_t slash = corner.find('/');
+  if (slash == std::string_view::npos) return;
+  const std::string_view text = corner.substr(slash + 1, corner.find('/', slash + 1) - slash - 1);
+  if (text.empty()) return;
+  long index = 0;
+  const bool is_number = parse_index(text, index) == IndexText::kNumber;
+  const long position = index > 0 ? index - 1 : static_cast<long>(textures_.size()) + index;
+  const bool possible = is_number && index != 0 && position >= 0 && std::cmp_less(position, kNoTexture);
+  texture_corners_.resize(corners_.size(), kNoTexture);
+  texture_corners_.back() = possible ? static_cast<std::uint32_t>(position) : kBadTexture;
+}
 
 // The third number of a corner. A vn further down says nothing: all programs write them before the faces.
 void ObjReader::add_normal_of(std::string_view corner, Vec3& sum) const {
@@ -470,8 +504,27 @@ void ObjReader::add_faces() {
     std::vector<std::vector<std::uint32_t>> rings;
     rings.push_back(std::move(ring));
     builder_.add_face(*patches[name], static_cast<MaterialId>(face.material), std::move(rings), face.line);
+    add_texture_of(face);
     if (normal != face_normals_.end() && normal->first == i) builder_.state_normal((normal++)->second);
   }
+  if (without_texture_.count == 0) return;
+  warn(without_texture_.first_line, "a face has no valid vt at one of its corners" + without_texture_.others(),
+       "it has none then, and lightmaps leave it out; nothing else depends on it",
+       "give every corner the number of a vt");
+}
+
+void ObjReader::add_texture_of(const ObjFace& face) {
+  std::vector<TexturePoint> points;
+  std::size_t faults = 0;
+  for (std::size_t c = face.first_corner; c < face.first_corner + face.corner_count; ++c) {
+    const std::uint32_t index = c < texture_corners_.size() ? texture_corners_[c] : kNoTexture;
+    const bool exists = index < textures_.size() && std::isfinite(textures_[index].u);
+    if (exists) points.push_back(textures_[index]);
+    if (!exists && index != kNoTexture) ++faults;
+  }
+  const bool whole = points.size() == face.corner_count;
+  if (faults > 0 || (!whole && !points.empty())) return without_texture_.add(face.line, "");
+  if (whole && !points.empty()) builder_.state_texture(0, std::move(points));
 }
 
 constexpr const char* kPurpose = "a Wavefront OBJ file";
@@ -494,112 +547,3 @@ Scene read_obj(const fs::path& path, const SceneOptions& options) {
 }
 
 }  // namespace exactff
-
-namespace exactff::formats {
-
-// --- Writer ---
-
-// Wavefront OBJ and MTL.
-
-namespace {
-
-constexpr NameRules kObjNames = {.comment = '#', .only_before_word = true, .joins_lines = true};
-
-bool is_default(const Material& material) {
-  return material.name == kNoMaterial && material.reflectance == Rgb{1.0, 1.0, 1.0} && !material.emits();
-}
-
-std::vector<std::string> material_names(const Scene& scene, Losses& losses) {
-  std::vector<std::string> names;
-  for (const Material& material : scene.materials()) names.push_back(material.name);
-  return output_names(std::move(names), kObjNames, "material", losses);
-}
-
-// The name of a group is one word, that of an object the rest of its line.
-bool patches_are_groups(const std::vector<std::string>& patches) {
-  return std::none_of(patches.begin(), patches.end(),
-                      [](const std::string& name) { return name.find_first_of(" \t\v\f") != std::string::npos; });
-}
-
-// True if the faces use all materials in their order, the default one apart. Otherwise they are named before the faces,
-// since a reader numbers them by their first use.
-bool used_in_order(const Scene& scene, const std::vector<OutputFace>& faces) {
-  std::size_t next = !scene.materials().empty() && scene.materials()[0].name == kNoMaterial ? 1 : 0;
-  for (const OutputFace& face : faces) {
-    const std::size_t material = index_of(scene.face(face.face).material);
-    if (material == next) ++next;
-    if (material > next) return false;
-  }
-  return next == scene.materials().size();
-}
-
-void append_faces(std::string& out, const Scene& scene, const std::vector<OutputFace>& faces,
-                  const std::vector<std::string>& patches, const std::vector<std::string>& materials) {
-  const char* const keyword = patches_are_groups(patches) ? "g " : "o ";
-  std::optional<PatchId> patch;
-  std::optional<MaterialId> material;
-  for (const OutputFace& output : faces) {
-    const Face& face = scene.face(output.face);
-    if (patch != face.patch) out += keyword + patches[index_of(face.patch)] + '\n';
-    const bool same = material == face.material || (!material && scene.material(face.material).name == kNoMaterial);
-    if (!same) out += "usemtl " + materials[index_of(face.material)] + '\n';
-    if (!same || material) material = face.material;
-    patch = face.patch;
-    out += 'f';
-    for (const std::uint32_t corner : output.corners) (out += ' ') += std::to_string(corner + 1ULL);
-    out += '\n';
-  }
-}
-
-void append_colour(std::string& out, const char* keyword, const Rgb& colour) {
-  out += keyword;
-  append_point(out, {colour.r, colour.g, colour.b});
-  out += '\n';
-}
-
-}  // namespace
-
-bool needs_mtl(const Scene& scene) {
-  return !std::all_of(scene.materials().begin(), scene.materials().end(), is_default);
-}
-
-std::string write_mtl(const Scene& scene, Losses& losses) {
-  const std::vector<std::string> names = material_names(scene, losses);
-  std::string out;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const Material& material = scene.materials()[i];
-    if (is_default(material)) continue;
-    out += "newmtl " + names[i] + '\n';
-    append_colour(out, "Kd", material.reflectance);
-    append_colour(out, "Ke", material.radiosity);
-  }
-  return out;
-}
-
-std::string write_obj(const Scene& scene, const std::string& mtl, Losses& losses) {
-  const std::vector<OutputFace> faces = output_faces(scene, Polygons::kAny, "OBJ", losses);
-  const std::vector<std::string> patches = output_names(patch_names(scene), kObjNames, "patch", losses);
-  Losses told_by_mtl({});
-  const std::vector<std::string> materials = material_names(scene, told_by_mtl);
-  std::string out;
-  if (!mtl.empty()) {
-    if (fit_name(mtl, kObjNames) != mtl) {
-      throw InputError({losses.file(), 0, "the name of its MTL file cannot be written into an OBJ file",
-                        "it contains characters that OBJ does not allow", "choose another name"});
-    }
-    out += "mtllib " + mtl + '\n';
-  }
-  for (const Vec3& vertex : scene.vertices()) {
-    out += 'v';
-    append_point(out, vertex);
-    out += '\n';
-  }
-  if (!used_in_order(scene, faces)) {
-    for (const std::string& name : materials) out += "usemtl " + name + '\n';
-    if (!materials.empty()) out += "usemtl " + std::string(kNoMaterial) + '\n';
-  }
-  append_faces(out, scene, faces, patches, materials);
-  return out;
-}
-
-}  // namespace exactff::formats

@@ -370,6 +370,13 @@ SceneFiles scene_files(const Scene& scene, const std::filesystem::path& path, En
     const bool binary = encoding == Encoding::kDefault ? writer->binary_by_default : encoding == Encoding::kBinary;
     result.files.push_back({path, (binary ? writer->binary : writer->text)(scene, losses)});
   }
+  for (const int set : {0, 1}) {
+    if (!scene.has_texture(set) || (wavefront && set == 0)) continue;
+    losses.add("texture coordinates are lost" + std::string(wavefront ? ", those of set 1" : ""),
+               wavefront ? "OBJ has one set" : "the format has none that exactff writes",
+               "only lightmaps need them; write OBJ to keep set 0");
+    break;
+  }
   result.losses = losses.take();
   return result;
 }

@@ -1,6 +1,7 @@
 // What a Scene holds. Immutable once SceneBuilder::build has returned.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -21,6 +22,13 @@
 
 namespace exactff {
 
+// Of all faces, one after the other. Takes no memory in a scene without.
+struct Texture {
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  std::vector<std::uint32_t> first;  // of each face, or of those up to the last one that has some; kNone for none
+  std::vector<TexturePoint> points;
+};
+
 struct Scene::Data {
   const SceneId id = next_id();
   std::string file;                          // its name in messages
@@ -32,6 +40,7 @@ struct Scene::Data {
   std::vector<Face> faces;             // in file order
   std::vector<Piece> pieces;           // in the order of their faces
   std::vector<std::uint32_t> corners;  // vertex indices of all pieces
+  std::array<Texture, kTextureSets> textures;
   std::vector<Problem> warnings;
   std::size_t warnings_of_glass = 0;  // that many come first
 
@@ -95,6 +104,52 @@ void require_of_scene(const Scene& scene, const Selection& selection);
 // `what`: "source"
 void require_of_scene(const Scene& scene, SceneId made_by, const char* what);
 void require_scene(const Scene* scene);  // of a request
+
+// --- Texture coordinates ---
+
+// Those of one face by the places of its corners.
+class FaceTexture {
+ public:
+  FaceTexture(const Scene& scene, FaceId face, int set);
+
+  [[nodiscard]] int set() const { return set_; }
+  // Null if no corner lies there.
+  [[nodiscard]] const TexturePoint* find(std::uint32_t place) const;
+
+ private:
+  int set_;
+  std::vector<std::pair<std::uint32_t, TexturePoint>> at_;  // ascending places
+};
+
+[[nodiscard]] inline TexturePoint between(const TexturePoint& a, const TexturePoint& b, double share) {
+  return {a.u + (b.u - a.u) * share, a.v + (b.v - a.v) * share};
+}
+
+// For the face added last, with these rings. `at` gives a corner's from the FaceTexture of the scene's face.
+template <class At>
+void copy_texture(const Scene& scene, FaceId face, const std::vector<std::vector<std::uint32_t>>& rings,
+                  SceneBuilder& builder, const At& at) {
+  for (int set = 0; set < kTextureSets; ++set) {
+    const std::span<const TexturePoint> same = scene.texture(face, set);
+    if (same.empty()) continue;
+    std::vector<TexturePoint> points(same.begin(), same.end());
+    if (rings != scene.face(face).rings) {
+      const FaceTexture texture(scene, face, set);
+      points.clear();
+      for (const auto& ring : rings) {
+        for (const std::uint32_t corner : ring) points.push_back(at(texture, corner));
+      }
+    }
+    builder.state_texture(set, std::move(points));
+  }
+}
+// The corners are vertices of the scene, at corners of its face.
+void copy_texture(const Scene& scene, FaceId face, const std::vector<std::vector<std::uint32_t>>& rings,
+                  SceneBuilder& builder);
+
+// Throws std::invalid_argument for another set than 0 and 1.
+[[nodiscard]] std::size_t texture_set(int set);
+[[nodiscard]] std::size_t corner_count(const std::vector<std::vector<std::uint32_t>>& rings);
 
 // --- Places ---
 

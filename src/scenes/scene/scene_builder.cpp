@@ -15,6 +15,8 @@
 
 namespace exactff {
 
+using Rings = std::vector<std::vector<std::uint32_t>>;
+
 struct SceneBuilder::State {
   SceneOptions options;
   std::unique_ptr<Scene::Data> data = std::make_unique<Scene::Data>();
@@ -31,6 +33,7 @@ struct SceneBuilder::State {
   void check_materials();
   void check_names();
   bool check_indices(const Face& face);
+  void drop_texture_points(FaceId id, const Rings& kept);
   void cut(FaceId id);
   void refuse(const Face& face, const FaceFault& fault);
   void add_parts(FaceId id, const std::vector<ConvexPart>& parts);
@@ -107,6 +110,22 @@ void SceneBuilder::state_normal(const Vec3& normal) {
   const std::size_t count = state().data->faces.size();
   if (count == 0) refuse_argument("there is no face yet", "state_normal() is about the face added last");
   state().stated_normals.emplace_back(static_cast<FaceId>(count - 1), normal);
+}
+
+void SceneBuilder::state_texture(int set, std::vector<TexturePoint> corners) {
+  Scene::Data& data = *state().data;
+  Texture& all = data.textures[texture_set(set)];
+  if (data.faces.empty()) refuse_argument("there is no face yet", "state_texture() is about the face added last");
+  if (const std::size_t count = corner_count(data.faces.back().rings); corners.size() != count) {
+    refuse_argument("there are " + std::to_string(corners.size()) + " texture coordinates",
+                    "the face has " + std::to_string(count) + " corners");
+  }
+  const auto is_finite = [](const TexturePoint& p) { return std::isfinite(p.u) && std::isfinite(p.v); };
+  if (!std::ranges::all_of(corners, is_finite)) return;
+  EXACTFF_EXPECT(all.points.size() + corners.size() < Texture::kNone);
+  all.first.resize(data.faces.size(), Texture::kNone);
+  all.first.back() = static_cast<std::uint32_t>(all.points.size());
+  all.points.insert(all.points.end(), corners.begin(), corners.end());
 }
 
 void SceneBuilder::mark_as_twin() {
@@ -191,10 +210,27 @@ bool SceneBuilder::State::check_indices(const Face& face) {
   return true;
 }
 
+// Of corners that repeat their neighbours' position. Those kept are the first of their ring at that vertex.
+void SceneBuilder::State::drop_texture_points(FaceId id, const Rings& kept) {
+  const Rings& before = data->faces[index_of(id)].rings;
+  if (corner_count(kept) == corner_count(before)) return;
+  for (Texture& texture : data->textures) {
+    if (index_of(id) >= texture.first.size() || texture.first[index_of(id)] == Texture::kNone) continue;
+    auto from = texture.points.begin() + texture.first[index_of(id)], to = from;
+    std::vector<TexturePoint> points;
+    for (std::size_t r = 0; r < kept.size(); from += static_cast<std::ptrdiff_t>(before[r++].size())) {
+      for (const std::uint32_t v : kept[r])
+        points.push_back(*(from + (std::ranges::find(before[r], v) - before[r].begin())));
+    }
+    std::ranges::copy(points, to);
+  }
+}
+
 void SceneBuilder::State::cut(FaceId id) {
   Face& face = data->faces[index_of(id)];
   if (!check_indices(face)) return;
   CutFace cut = cut_face(data->vertices, face.rings);
+  drop_texture_points(id, cut.rings);
   face.rings = std::move(cut.rings);
   face.shape = cut.shape;
   face.newell = cut.newell;

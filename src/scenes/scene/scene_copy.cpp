@@ -72,12 +72,13 @@ SceneCopy::SceneCopy(const Scene& scene, const Vec3& origin)
   for (const Vec3& v : scene.vertices()) builder_.add_vertex({v.x - origin.x, v.y - origin.y, v.z - origin.z});
   for (const Material& material : scene.materials()) builder_.add_material(material);
   for (const Patch& patch : scene.patches()) (void)builder_.patch(patch.name);
-  for (const Face& face : scene.faces()) {
-    builder_.add_face(face.patch, face.material, rings_of(face));
-    if (face.is_twin) builder_.mark_as_twin();
-  }
   for (std::size_t f = 0; f < scene.faces().size(); ++f) {
-    if (scene.faces()[f].transparent) add_transparent(scene.faces()[f].patch, static_cast<FaceId>(f));
+    const Face& face = scene.faces()[f];
+    const auto id = static_cast<FaceId>(f);
+    builder_.add_face(face.patch, face.material, rings_of(face));
+    if (face.piece_count > 0) copy_texture(scene, id, face.rings, builder_);
+    if (face.is_twin) builder_.mark_as_twin();
+    if (face.transparent) add_transparent(face.patch, id);
   }
 }
 
@@ -137,6 +138,16 @@ void flip(Face& face) {
   }
 }
 
+void flip(Texture& texture, const Face& face, FaceId id) {
+  if (index_of(id) >= texture.first.size() || texture.first[index_of(id)] == Texture::kNone) return;
+  auto first = texture.points.begin() + texture.first[index_of(id)];
+  for (const std::vector<std::uint32_t>& ring : face.rings) {
+    const auto last = first + static_cast<std::ptrdiff_t>(ring.size());
+    std::reverse(first, last);
+    first = last;
+  }
+}
+
 void flip(Piece& piece, std::vector<std::uint32_t>& corners) {
   const auto first = corners.begin() + piece.first_corner;
   std::reverse(first, first + piece.corner_count);
@@ -154,6 +165,7 @@ std::unique_ptr<SceneInside::Data> copy_of(const SceneInside::Data& data) {
   copy->faces = data.faces;
   copy->pieces = data.pieces;
   copy->corners = data.corners;
+  copy->textures = data.textures;
   copy->warnings = data.warnings;
   copy->warnings_of_glass = data.warnings_of_glass;
   return copy;
@@ -197,6 +209,7 @@ Scene Scene::with_flipped(std::span<const Selection> selections) const {
   auto copy = copy_of(data());
   for (const FaceId id : all_faces_of(*this, selections)) {
     Face& face = copy->faces[index_of(id)];
+    for (Texture& texture : copy->textures) flip(texture, face, id);
     flip(face);
     for (std::uint32_t p = 0; p < face.piece_count; ++p) flip(copy->pieces[face.first_piece + p], copy->corners);
   }

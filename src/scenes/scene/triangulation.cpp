@@ -627,7 +627,8 @@ Scene triangulated(const Scene& scene) {
     const Face& face = scene.face(piece.face);
     for (std::vector<std::uint32_t>& triangle : triangles_of(scene, piece)) {
       if (face.transparent) transparent.push_back({face.patch, static_cast<FaceId>(count)});
-      builder.add_face(face.patch, face.material, {std::move(triangle)});
+      builder.add_face(face.patch, face.material, {triangle});
+      copy_texture(scene, piece.face, {std::move(triangle)}, builder);
       ++count;
     }
   }

@@ -177,6 +177,9 @@ class Welding {
   }
 
   [[nodiscard]] const Rings& rings(std::size_t face) const { return rings_[face]; }
+  // Texture coordinates of a face with these rings, of each set. A corner that was added to an edge gets them between
+  // its neighbours', by the distances from them.
+  [[nodiscard]] std::array<std::vector<TexturePoint>, kTextureSets> textures(std::size_t face, const Rings& rings);
   [[nodiscard]] const Vec3& at(Id corner) const { return at_[corner]; }
   [[nodiscard]] std::span<const Id> before() const { return corners_; }
   [[nodiscard]] std::span<const Id> live() const { return live_; }
@@ -486,6 +489,37 @@ class Welding {
   std::size_t junctions_ = 0;
 };
 
+std::array<std::vector<TexturePoint>, kTextureSets> Welding::textures(std::size_t face, const Rings& rings) {
+  std::array<std::vector<TexturePoint>, kTextureSets> result;
+  for (std::size_t set = 0; set < result.size(); ++set) {
+    const std::span<const TexturePoint> before = scene_.texture(static_cast<FaceId>(face), static_cast<int>(set));
+    if (before.empty()) continue;
+    std::map<Id, TexturePoint> known;
+    std::size_t k = 0;
+    for (const auto& ring : scene_.faces()[face].rings) {
+      for (const Id corner : ring) known.try_emplace(now_.root(places(scene_)[corner]), before[k++]);
+    }
+    for (const auto& ring : rings) {
+      const auto corner = [&](std::size_t i) { return ring[i % ring.size()]; };
+      const auto length = [&](std::size_t from, std::size_t to) {
+        double sum = 0.0;
+        for (; from < to; ++from) sum += kernel::distance(at_[corner(from)], at_[corner(from + 1)]);
+        return sum;
+      };
+      for (std::size_t i = ring.size(); i < 2 * ring.size(); ++i) {
+        std::size_t low = i, high = i;
+        while (low > 0 && !known.contains(corner(low))) --low;
+        while (high < 3 * ring.size() && !known.contains(corner(high))) ++high;
+        const auto from = known.find(corner(low)), to = known.find(corner(high));
+        if (from == known.end() || to == known.end()) return {};  // nothing is left of the face's own corners
+        const double share = low < high ? length(low, i) / length(low, high) : 0.0;
+        result[set].push_back(between(from->second, to->second, share));
+      }
+    }
+  }
+  return result;
+}
+
 // Face to face: the set of corners of a face.
 std::vector<Id> corner_set(const Rings& rings) {
   std::vector<Id> all;
@@ -552,9 +586,16 @@ WeldedScene built(const Scene& scene, Welding& welding, double length) {
     if (face.flipped) flipped.push_back(made);
     for (auto& ring : rings) {
       if (face.flipped) std::ranges::reverse(ring);
+    }
+    const std::array textures = welding.textures(f, rings);
+    for (auto& ring : rings) {
       for (Id& corner : ring) corner = vertex[corner];
     }
     builder.add_face(face.patch, face.material, std::move(rings), face.line);
+    for (int set = 0; set < kTextureSets; ++set) {
+      const std::vector<TexturePoint>& texture = textures[static_cast<std::size_t>(set)];
+      if (!texture.empty()) builder.state_texture(set, texture);
+    }
     if (face.is_twin) builder.mark_as_twin();
   }
   if (now.empty()) {

@@ -120,6 +120,44 @@ TEST_F(RenderCommand, BadInputIsRefused) {
   EXPECT_EQ(files(), 1U) << "the array";
 }
 
+// The texels' positions and normals in a file are receivers of truth, as of any renderer.
+TEST_F(RenderCommand, ALightmapAgreesWithTruthAtItsPoints) {
+  const std::string scene = EXACTFF_DATA_DIR "/scenes/lightmap_room.obj";
+  const auto run = [&](const Words& words) {
+    const auto ran = validation::run_program(EXACTFF_PROGRAM, words);
+    EXPECT_EQ(ran.exit_code, 0) << ran.error;
+    return ran.output;
+  };
+  const Words lightmap = {"render", scene, "--lightmap", "47x47", "-o"};
+  const auto with = [&](Words more) {
+    more.insert(more.begin(), lightmap.begin(), lightmap.end());
+    return run(more);
+  };
+  const std::string told = with({path("a.exr"), "--layers", "--margin", "1"});
+  EXPECT_NE(told.find("47 x 47 texels: "), std::string::npos) << told;
+  EXPECT_NE(told.find("charts: 1992 faces; "), std::string::npos) << told;
+  for (const char* words : {"v = 1 above the first row", "margin", "irradiance", "position.X"})
+    EXPECT_NE(text_of(path("a.exr")).find(words), std::string::npos) << words;
+  run({"truth", scene, "--receivers", path("a.exr"), "--on", "auto", "--total", "irradiance", "-o", path("t.csv"),
+       "--exr", path("t.exr")});
+  const std::string errors = with({path("e.png"), "--against", path("t.exr")});
+  EXPECT_NE(errors.find("; 0 % of pixels wrong by over 10 %"), std::string::npos) << errors;
+  const std::string some = with({path("b.png"), "--on", "light_1,floor:1", "--measure", "solid-angle"});
+  EXPECT_NE(some.find("charts: 3 faces"), std::string::npos) << some;
+  for (const auto& [words, message] : std::vector<std::pair<Words, std::string>>{
+           {{"render", scene, "--lightmap", "48", "-o", path("c.png")}, "--lightmap: '48' is not a size"},
+           {{"render", scene, "--uv", "1", "-o", path("c.png")}, "--uv requires --lightmap"},
+           {{"render", scene, "--lightmap", "4x4", "--two-sided", "-o", path("c.png")}, "leave out --two-sided"},
+           {{"render", scene, "--lightmap", "4x4", "--spp", "2", "-o", path("c.png")}, "--spp excludes --lightmap"},
+           {{"render", scene, "--lightmap", "4x4", "--uv", "1", "-o", path("c.png")}, "no face has texture"},
+           {{"render", scene, "--lightmap", "4x4", "--against", path("t.exr"), "-o", path("c.png")},
+            "give --lightmap 47x47"}}) {
+    const validation::ProgramRun refused = validation::run_exactff(words);
+    EXPECT_EQ(refused.exit_code, 2) << message;
+    EXPECT_NE(refused.error.find(message), std::string::npos) << refused.error;
+  }
+}
+
 TEST_F(RenderCommand, ContinuesAfterAnInterruption) {
   const Words long_run = {"--size", "300x300", "--spp", "2", "-o", path("a.exr")};
   RunningProgram program(EXACTFF_PROGRAM, words(long_run), directory_.path() / "error");

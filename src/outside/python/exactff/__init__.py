@@ -36,7 +36,7 @@ from . import methods
 from ._arguments import InputError, ModellingWarning, Problem
 from ._check import (check, CheckReport, Distribution, Improvement, RowError, scoreboard, Scoreboard, truth,
                      TruthSummary, Verdict)
-from ._geometry import Contact, Finding, Gap, Material, Patch, Receivers, Report, Welding
+from ._geometry import Contact, Finding, Gap, Lightmap, Material, Patch, Receivers, Report, Welding
 from ._pair import DerivativeStatus, Drawing, Enclosure, FormFactor, FormFactors, Gradient, Status, VertexGradient
 from ._scene import Scene
 from ._views import (Balance, ExchangeFactors, PairOfPatches, radiosity, Radiosity, Reciprocity, SeenPatch, Share, Temperatures, View,
@@ -46,7 +46,7 @@ __version__ = _exactff.version
 
 __all__ = [
     "Balance", "CheckReport", "Contact", "DerivativeStatus", "Distribution", "Drawing", "Enclosure", "Finding", "FormFactor",
-    "ExchangeFactors", "FormFactors", "Gap", "Gradient", "Improvement", "InputError", "Material", "ModellingWarning", "PairOfPatches", "Patch", "Problem", "Radiosity", "Receivers",
+    "ExchangeFactors", "FormFactors", "Gap", "Gradient", "Improvement", "InputError", "Lightmap", "Material", "ModellingWarning", "PairOfPatches", "Patch", "Problem", "Radiosity", "Receivers",
     "Reciprocity", "Report", "RowError",
     "Scene", "Scoreboard", "SeenPatch", "Share", "Status", "Temperatures", "TruthSummary", "Verdict", "VertexGradient", "View", "ViewFactor", "ViewFactorMatrix", "Welding",
     "__version__", "check", "methods", "radiosity", "scoreboard", "truth", "view", "view_factor",

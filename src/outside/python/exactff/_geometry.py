@@ -300,3 +300,17 @@ def _colour(value: Any, name: str, most: float) -> list[float]:
     if (array < 0.0).any() or (array > most).any():
         refuse(f"{name} is {value!r}", f"it is {'from 0 to 1' if most == 1.0 else 'at least 0'}", "correct it")
     return [float(c) for c in np.broadcast_to(array, (3,))]
+
+
+class Lightmap(NamedTuple):
+    """The texels that show faces. ``image[m.rows, m.columns] = values`` draws values at its receivers; row 0 is at v = 1."""
+
+    receivers: Receivers  #: at the points that the texels' centres stand for, with ids such as ``x4y2``
+    rows: Ints
+    columns: Ints
+    faces: int  #: with texture coordinates
+    without: int  #: faces without; they are left out
+    flat: int  #: faces without area in the texture
+    outside: int  #: faces with a corner outside of 0 to 1
+    missed: int  #: other faces that no texel shows
+    overlapping: int  #: texels strictly inside several triangles; they show the lowest face

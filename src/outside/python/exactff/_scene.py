@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from typing import Any, Literal, Mapping, Optional, Sequence, Union, overload
 
@@ -10,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from . import _arguments, _exactff, _geometry, _meshes
 from ._arguments import check_existing, Floats, Ints, Measure, Names, Progress, refuse, require_free, shown, warn
-from ._geometry import Contact, Finding, Gap, Material, Patch, Receivers, Report, Welding
+from ._geometry import Contact, Finding, Gap, Lightmap, Material, Patch, Receivers, Report, Welding
 from ._pair import _Again, FormFactor, FormFactors, Status
 
 #: Own faces: None, "auto", "auto:DISTANCE", a name ("floor", "floor:2", "floor:1+2"), indices of faces, or a list of
@@ -172,6 +173,12 @@ class Scene:
         """The vertices of a face: the outer ring, then its holes."""
         return self._scene.rings(face)
 
+    def texture(self, face: int, uv: int = 0) -> Floats:
+        """Texture coordinates of a face, (n, 2): one row for each corner, through all rings; none if it has none."""
+        if uv not in (0, 1):
+            refuse(f"there is no set {uv} of texture coordinates", "a face has at most two", "give 0 or 1")
+        return self._scene.texture(face, uv)
+
     def face_name(self, face: int) -> str:
         """``NAME:k``, or ``NAME`` for a patch of one face."""
         return self._scene.face_name(face)
@@ -325,6 +332,18 @@ class Scene:
                    "for example grid=(32, 32)")
         return Receivers(*_exactff.ReceiverList.on_faces(self._scene, _arrays_names(names), _grid(grid), bool(vertices),
                                                          bool(centres), samples, seed, bool(per_face)))
+
+    def lightmap(self, width: int, height: int, on: Names = None, *, uv: int = 0) -> Lightmap:
+        """Receivers at the points of faces that the centres of texels stand for, by texture coordinates, exactly; as
+        ``exactff render --lightmap``. `on`: names of patches or faces; None for all. Raises InputError."""
+        if uv not in (0, 1):
+            refuse(f"there is no set {uv} of texture coordinates", "a face has at most two", "give 0 or 1")
+        names = _arrays_names(on)
+        if on is not None and not names:
+            refuse("on names no patch", "a lightmap shows faces", "name one, or leave it out for all")
+        made, texels, *counts = _exactff.ReceiverList.of_lightmap(self._scene, operator.index(width),
+                                                                  operator.index(height), uv, names, on is None)
+        return Lightmap(Receivers(made, f"{width}x{height} texels"), texels[:, 0], texels[:, 1], *counts)
 
     def read_receivers(self, path: Union[str, os.PathLike[str]]) -> Receivers:
         """Reads a CSV file with the columns id,x,y,z,nx,ny,nz,on, or a truth file."""
