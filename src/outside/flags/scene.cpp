@@ -61,7 +61,7 @@ Scene divided_with_note(const Scene& scene, double length) {
 void SceneArguments::add_to(CLI::App& app) {
   command = &app;
   app.add_option("SCENE", path,
-                 "File (OBJ, PLY, STL, OFF, View3D), - for an OBJ file from standard input, or "
+                 "File (OBJ, glTF, PLY, STL, OFF, View3D), - for an OBJ file from standard input, or "
                  "@MODEL[:SETTING=VALUE,...] for a generated scene: `exactff info @` lists them")
       ->required()
       ->check(is_read());

@@ -18,11 +18,11 @@ namespace exactff {
 namespace formats {
 namespace {
 
-enum class Format { kObj, kPly, kStlText, kStlBinary, kOff, kView3d };
+enum class Format { kObj, kGltf, kPly, kStlText, kStlBinary, kOff, kView3d };
 
 // A format that exactff does not read.
 struct ForeignKind {
-  std::string_view name;       // "a glTF file"
+  std::string_view name;       // "a Collada file"
   std::string_view converter;  // completes "convert it, for example with ..."
 };
 
@@ -47,7 +47,6 @@ constexpr ForeignKind kAbaqus{"an Abaqus or CalculiX file", kMeshio};
 constexpr ForeignKind kInp{"an Abaqus, CalculiX or AVS file (.inp)", kMeshio};
 constexpr ForeignKind kNastran{"a Nastran file", kMeshio};
 constexpr ForeignKind kVtk{"a VTK file", "ParaView or meshio: save as PLY, without names"};
-constexpr ForeignKind kGltf{"a glTF file", kAssimp};
 constexpr ForeignKind kCollada{"a Collada file", kAssimp};
 constexpr ForeignKind kFbx{"an FBX file", kAssimp};
 constexpr ForeignKind k3ds{"a 3DS file", kAssimp};
@@ -81,8 +80,7 @@ struct Signature {
 };
 
 // The first bytes of a file.
-constexpr std::array<Signature, 31> kSignatures = {{
-    {"glTF", {"a binary glTF file (.glb)", kAssimp}},
+constexpr std::array<Signature, 30> kSignatures = {{
     {"# vtk DataFile", kVtk},
     {"Kaydara FBX Binary", kFbx},
     {"; FBX", kFbx},
@@ -123,7 +121,7 @@ struct Extension {
 };
 
 // They count where the content tells nothing, and is not that of an OBJ file.
-constexpr std::array<Extension, 37> kExtensions = {{
+constexpr std::array<Extension, 35> kExtensions = {{
     {".inp", kInp},
     {".bdf", kNastran},
     {".nas", kNastran},
@@ -136,8 +134,6 @@ constexpr std::array<Extension, 37> kExtensions = {{
     {".vtk", kVtk},
     {".vtu", kVtk},
     {".vtp", kVtk},
-    {".gltf", kGltf},
-    {".glb", kGltf},
     {".pbrt", kPbrt},
     {".dae", kCollada},
     {".3ds", k3ds},
@@ -182,8 +178,7 @@ ForeignKind markup_kind(std::string_view head) {
 
 ForeignKind json_kind(std::string_view head) {
   if (contains(head, "\"BuildingSurface:Detailed\"") || contains(head, "\"Building\"")) return kEpJson;
-  const bool gltf = contains(head, "\"asset\"") || contains(head, "\"meshes\"") || contains(head, "\"accessors\"");
-  return gltf ? kGltf : ForeignKind{"a JSON file", "its own program"};
+  return {"a JSON file", "its own program"};
 }
 
 // The first group of a DXF file: code 0, value SECTION.
@@ -275,6 +270,18 @@ bool is_obj_keyword(std::string_view word) {
   return std::ranges::find(kKeywords, word) != kKeywords.end();
 }
 
+// `start` is the text without leading blanks.
+bool is_gltf(std::string_view start, std::string_view extension) {
+  if (start.starts_with("glTF") || extension == ".glb" || extension == ".gltf") return true;
+  return start.starts_with("{") &&
+         (contains(start, "\"asset\"") || contains(start, "\"meshes\"") || contains(start, "\"accessors\""));
+}
+
+std::string_view without_blanks(std::string_view head) {
+  head.remove_prefix(std::min(head.find_first_not_of(" \t\r\n"), head.size()));
+  return head;
+}
+
 // The extension in lower case, with its dot.
 std::string lower_extension(const std::filesystem::path& path) {
   return text::in_lower_case(path.extension().string());
@@ -285,6 +292,7 @@ Format format_of(std::string_view bytes, const std::filesystem::path& path) {
   const std::string_view head = without_mark(bytes.substr(0, kLookedAt));
   const std::string extension = lower_extension(path);
   if (is_ply(head)) return Format::kPly;
+  if (is_gltf(without_blanks(head), extension)) return Format::kGltf;
   if (is_binary_stl(bytes)) return Format::kStlBinary;
   const std::string_view word = first_word(head);
   const bool binary = contains(head, std::string_view("\0", 1));
@@ -307,10 +315,10 @@ std::optional<ForeignKind> foreign_kind(std::string_view bytes, const std::files
   if (is_dxf(head)) return kDxf;
   if (is_iges(head)) return kIges;
   if (is_3ds(bytes)) return k3ds;
-  std::string_view start = head;
-  start.remove_prefix(std::min(start.find_first_not_of(" \t\r\n"), start.size()));
+  const std::string_view start = without_blanks(head);
   if (start.starts_with("ISO-10303-21;")) return step_kind(head);
   if (start.starts_with("<")) return markup_kind(head);
+  if (is_gltf(start, lower_extension(path))) return std::nullopt;
   if (start.starts_with("{")) return json_kind(head);
   if (format_of(bytes, path) != Format::kObj || is_obj_keyword(first_word(head))) return std::nullopt;
   const std::string extension = lower_extension(path);
@@ -387,7 +395,7 @@ SceneFiles scene_files(const Scene& scene, const std::filesystem::path& path, En
 
 namespace {
 
-constexpr const char* kAnyFormat = "an OBJ, PLY, STL, OFF or View3D file";
+constexpr const char* kAnyFormat = "an OBJ, glTF, PLY, STL, OFF or View3D file";
 
 }  // namespace
 
@@ -398,7 +406,7 @@ Scene read_scene(std::string_view bytes, const std::filesystem::path& path, cons
     throw InputError({file, 0, "is empty", "there is nothing to compute with", std::string("give ") + kAnyFormat});
   if (const auto kind = formats::foreign_kind(bytes, path)) {
     throw InputError({file, 0, "is " + std::string(kind->name),
-                      std::string("exactff reads OBJ, PLY, STL, OFF and View3D"),
+                      std::string("exactff reads OBJ, glTF, PLY, STL, OFF and View3D"),
                       "convert it, for example with " + std::string(kind->converter)});
   }
   const formats::Format format = formats::format_of(bytes, path);
@@ -407,6 +415,8 @@ Scene read_scene(std::string_view bytes, const std::filesystem::path& path, cons
       return formats::read_ply(bytes, path, options);
     case formats::Format::kStlBinary:
       return formats::read_stl_binary(bytes, path, options);
+    case formats::Format::kGltf:
+      return formats::read_gltf(bytes, path, options);
     default:
       break;
   }

@@ -66,7 +66,7 @@ class Scene:
     @classmethod
     def read(cls, path: Union[str, os.PathLike[str]], *, patches: str = "groups",
              skip_bad_faces: bool = False) -> Scene:
-        """Reads an OBJ, PLY, STL, OFF or View3D file. `patches` says what a patch is: see `with_patches`.
+        """Reads an OBJ, glTF, PLY, STL, OFF or View3D file. `patches` says what a patch is: see `with_patches`.
 
         Raises InputError with every problem and its line. Warnings of the file are ModellingWarning."""
         file = os.path.abspath(os.fspath(path))
