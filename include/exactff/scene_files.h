@@ -19,6 +19,8 @@
 //   of one name are a patch, those without a name the patch `obstructions`. Kd is 1 - emittance. Subsurfaces are cut
 //   from their base exactly, or refused.
 //
+// A line "# unit mm" (OBJ, OFF) or "comment unit mm" (PLY) among the first 20 is Scene::unit, which the writers keep.
+//
 // Files without materials get Kd 1 and Ke 0. Text is read as doubles, correctly rounded, even where a PLY header says
 // float. Files of other known kinds (VTK, STEP, IFC, Abaqus, Nastran, EnergyPlus, ...) are refused with the name
 // of a converter.
@@ -35,6 +37,11 @@
 namespace exactff {
 
 // Throws one InputError with all problems found, each with a line, or an offset in bytes in a binary file.
+//
+// "a.stl+b.stl+c.glb" are several files, unless there is a file of that name. Each name is as long as there is such a
+// file. A patch `default` has the name of its file, without extension; a name that several files use becomes
+// FILE/NAME, as do different materials of one name. All are converted into the unit of the first file
+// (SceneOptions::convert_to), if any states one. Faces have no lines.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path, const SceneOptions& options = {});
 
 // As above, from the bytes of the file. `path` stands for it in messages, gives the extension and locates MTL files.

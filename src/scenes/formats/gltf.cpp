@@ -563,7 +563,9 @@ void GltfReader::tell() {
 }  // namespace
 
 Scene read_gltf(std::string_view bytes, const std::filesystem::path& path, const SceneOptions& options) {
-  return GltfReader(bytes, path, options).run();
+  SceneOptions in_metres = options;
+  in_metres.unit = Unit::kMetre;  // as glTF prescribes
+  return GltfReader(bytes, path, in_metres).run();
 }
 
 }  // namespace exactff::formats

@@ -102,7 +102,17 @@ class SharedVertices {
   std::uint64_t seed_ = static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
 };
 
+// --- Several files ---
+
+// The files that `path` means: see scene_files.h.
+[[nodiscard]] std::vector<std::filesystem::path> files_named(const std::filesystem::path& path);
+[[nodiscard]] Scene read_several(const std::filesystem::path& path, const std::vector<std::filesystem::path>& files,
+                                 const SceneOptions& options);
+
 // --- Readers ---
+
+// With the unit that the file states, if it does.
+[[nodiscard]] SceneOptions with_unit_of(std::string_view bytes, SceneOptions options);
 
 // The readers, each of one format. `bytes` is the whole file, `path` names it in messages.
 

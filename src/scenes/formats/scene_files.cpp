@@ -344,6 +344,22 @@ void write_wavefront(const Scene& scene, const std::filesystem::path& path, Scen
   result.files.push_back({path, formats::write_obj(scene, mtl.filename().string(), losses)});
 }
 
+// In a comment.
+void state_unit(std::string& bytes, std::string_view extension, Unit unit, formats::Losses& losses) {
+  if (unit == Unit::kNone) return;
+  const std::string text = "unit " + std::string(name_of(unit)) + '\n';
+  if (extension == ".obj") {
+    bytes.insert(0, "# " + text);
+  } else if (extension == ".off") {
+    bytes.insert(bytes.find('\n') + 1, "# " + text);
+  } else if (extension == ".ply") {
+    bytes.insert(bytes.find('\n', bytes.find('\n') + 1) + 1, "comment " + text);
+  } else {
+    losses.add("the " + text.substr(0, text.size() - 1) + " is lost", "the format has no place for it",
+               "give --unit where you read it");
+  }
+}
+
 struct Writer {
   std::string_view extension;
   std::string (*text)(const Scene&, formats::Losses&);
@@ -387,6 +403,7 @@ SceneFiles scene_files(const Scene& scene, const std::filesystem::path& path, En
                "only lightmaps need them; write OBJ to keep set 0");
     break;
   }
+  state_unit(result.files.back().bytes, extension, scene.unit(), losses);
   result.losses = losses.take();
   return result;
 }
@@ -399,7 +416,8 @@ constexpr const char* kAnyFormat = "an OBJ, glTF, PLY, STL, OFF or View3D file";
 
 }  // namespace
 
-Scene read_scene(std::string_view bytes, const std::filesystem::path& path, const SceneOptions& options) {
+Scene read_scene(std::string_view bytes, const std::filesystem::path& path, const SceneOptions& given) {
+  const SceneOptions options = formats::with_unit_of(bytes, given);
   const kernel::StandardArithmetic arithmetic;
   const std::string file = path.string();
   if (bytes.empty())
@@ -434,6 +452,8 @@ Scene read_scene(std::string_view bytes, const std::filesystem::path& path, cons
 }
 
 Scene read_scene(const std::filesystem::path& path, const SceneOptions& options) {
+  const std::vector<std::filesystem::path> files = formats::files_named(path);
+  if (files.size() > 1) return formats::read_several(path, files, options);
   return SceneInside::read_from(path, read_scene(text::read_file(path, kAnyFormat), path, options));
 }
 
