@@ -382,7 +382,8 @@ SceneFiles scene_files(const Scene& scene, const std::filesystem::path& path, En
   const bool wavefront = extension == ".obj";
   if (!wavefront && writer == kWriters.end()) {
     throw InputError({path.string(), 0, "no format is known for the extension " + text::in_quotes(extension),
-                      "the extension says which format to write", "name a file .obj, .ply, .stl, .off or .vs3"});
+                      "the extension says which format to write",
+                      "name a file .obj, .ply, .stl, .off or .vs3; glTF is only read"});
   }
   if (encoding == Encoding::kBinary && (wavefront || writer->binary == nullptr)) {
     throw InputError(

@@ -15,8 +15,8 @@ namespace exactff::formats {
 namespace fs = std::filesystem;
 
 SceneOptions with_unit_of(std::string_view bytes, SceneOptions options) {
-  constexpr std::size_t kLookedAt = 4096, kLines = 20;
-  text::PlainLines lines(bytes.substr(0, kLookedAt));
+  constexpr std::size_t kHeadBytes = 4096, kLines = 20;
+  text::PlainLines lines(bytes.substr(0, kHeadBytes));
   for (text::TextLine line; line.number < kLines && lines.next(line);) {
     const std::vector<std::string_view> words = text::words(line.text);
     if (words.size() != 3 || (words[0] != "#" && words[0] != "comment") || words[1] != "unit") continue;
