@@ -42,7 +42,7 @@ run() {
 export -f run
 export seconds build work findings
 
-targets=(solver view cells obj ply stl off view3d receivers exr check study truth_journal)
+targets=(solver view cells obj gltf ply stl off view3d receivers exr check study truth_journal)
 run_program() {
   mkdir "$work/program"
   rm -rf "$findings"/program-*

@@ -14,6 +14,7 @@ packages=(
   libcgal-dev libboost-dev libgmp-dev libmpfr-dev libflint-dev  # exact geometry, certified contour
   libembree-dev                                                 # shadow rays
   libopenexr-dev libpng-dev                                     # images
+  libtinygltf-dev                                               # scenes in glTF
   libjemalloc-dev                                               # the program's allocator
   libeigen3-dev                                                 # linear systems
   libcli11-dev nlohmann-json3-dev libfmt-dev gnuplot-nox        # program and report
@@ -48,6 +49,7 @@ exactff is built from these, in these versions or newer ones:
   FLINT              3, which contains Arb, or 2.9 with Arb 2.23
   Embree             4, or 3.13
   OpenEXR, libpng    3.1, 1.6
+  tinygltf           2.7, as a library
   Eigen, CLI11       3.4, 2.3
   nlohmann-json      3.11
   fmt                9

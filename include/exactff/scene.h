@@ -26,6 +26,11 @@ enum class MaterialId : std::uint32_t {};
 enum class SceneId : std::uint64_t {};
 inline constexpr SceneId kAnyScene{0};
 
+// A unit of length. Scenes need none; it is kept for people and for files.
+enum class Unit { kNone, kMillimetre, kCentimetre, kMetre, kInch, kFoot };
+[[nodiscard]] std::string_view name_of(Unit unit);     // "mm", "cm", "m", "in", "ft"; "" for none
+[[nodiscard]] Unit unit_named(std::string_view text);  // throws InputError for another text
+
 // A face may have two sets of texture coordinates, 0 and 1.
 inline constexpr int kTextureSets = 2;
 
@@ -196,6 +201,9 @@ class Scene {
   // lower-case hexadecimal digits.
   [[nodiscard]] std::string hash() const;
 
+  // Of its coordinates. No other value depends on it, nor does hash().
+  [[nodiscard]] Unit unit() const;
+
   // The files that it was read from: its own and its MTL files. None for a scene that was generated or built.
   [[nodiscard]] std::span<const std::filesystem::path> files() const;
 
@@ -231,6 +239,10 @@ struct SceneOptions {
   BadFaces bad_faces = BadFaces::kReject;
   PatchMode patches = PatchMode::kGroups;
   double smooth_degrees = 30.0;  // from 0 to 180
+  Unit unit = Unit::kNone;       // of a file that does not state its own
+  // Coordinates are multiplied by the exact ratio of the file's unit and this one, and rounded once, with a warning
+  // that counts them. An InputError if the unit of the file is not known.
+  Unit convert_to = Unit::kNone;
 };
 // "groups", "faces", "planes", "smooth", "smooth:20" (degrees), "parts". Throws InputError for another text.
 [[nodiscard]] SceneOptions scene_options(std::string_view patches, BadFaces bad_faces = BadFaces::kReject);
@@ -260,6 +272,7 @@ class SceneBuilder {
   // if one of them is not finite. Throws std::invalid_argument for another number of them, or another set.
   void state_texture(int set, std::vector<TexturePoint> corners);
   void warn(Problem warning);
+  void set_unit(Unit unit);  // instead of SceneOptions::unit
   // The scene was read from this file, too (Scene::files).
   void read_from(std::filesystem::path file);
 

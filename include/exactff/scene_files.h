@@ -7,13 +7,22 @@
 //   of the faces makes patches `patch_N` (`material_N`), or of the name that a comment "patch N NAME" gives.
 // - STL, in text and binary. A solid is a patch, with the rest of its line as its name. Vertices with equal doubles are
 //   one vertex. Fronts follow from the order of the vertices; stored normals are ignored.
+// - glTF 2.0 (.gltf with its buffers, .glb). A patch is a node that has a mesh; NAME/MATERIAL for each material where
+//   the mesh has several. Its name is that of the node, else of the mesh, else of the nearest node above. A repeated
+//   name continues its patch. Nodes of the default scene; their transforms are applied exactly, a rotation as that of
+//   its quaternion divided by its length, and each coordinate is rounded once. Equal positions are one vertex. Kd is
+//   the base colour factor, Ke the emissive factor times KHR_materials_emissive_strength: images do not count.
+//   TEXCOORD_0 and TEXCOORD_1 are Scene::texture, with v upwards. Fronts follow from the order of the vertices. Units
+//   are metres. Points, lines, skins, morph targets, lights and cameras are left out.
 // - OFF, in text.
 // - View3D (.vs3). A surface is a patch; a combined surface belongs to the patch of the other one. Obstruction surfaces
 //   of one name are a patch, those without a name the patch `obstructions`. Kd is 1 - emittance. Subsurfaces are cut
 //   from their base exactly, or refused.
 //
+// A line "# unit mm" (OBJ, OFF) or "comment unit mm" (PLY) among the first 20 is Scene::unit, which the writers keep.
+//
 // Files without materials get Kd 1 and Ke 0. Text is read as doubles, correctly rounded, even where a PLY header says
-// float. Files of other known kinds (glTF, VTK, STEP, IFC, Abaqus, Nastran, EnergyPlus, ...) are refused with the name
+// float. Files of other known kinds (VTK, STEP, IFC, Abaqus, Nastran, EnergyPlus, ...) are refused with the name
 // of a converter.
 #pragma once
 
@@ -28,6 +37,11 @@
 namespace exactff {
 
 // Throws one InputError with all problems found, each with a line, or an offset in bytes in a binary file.
+//
+// "a.stl+b.stl+c.glb" are several files, unless there is a file of that name. Each name is as long as there is such a
+// file. A patch `default` has the name of its file, without extension; a name that several files use becomes
+// FILE/NAME, as do different materials of one name. All are converted into the unit of the first file
+// (SceneOptions::convert_to), if any states one. Faces have no lines.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path, const SceneOptions& options = {});
 
 // As above, from the bytes of the file. `path` stands for it in messages, gives the extension and locates MTL files.

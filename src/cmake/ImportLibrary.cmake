@@ -25,6 +25,7 @@ exactff_import_library(gmp gmp.h gmp)
 exactff_import_library(gmpxx gmpxx.h gmpxx exactff_dep::gmp)
 exactff_import_library(mpfr mpfr.h mpfr exactff_dep::gmp)
 exactff_import_library(flint flint/fmpz.h flint exactff_dep::mpfr)
+exactff_import_library(tinygltf tiny_gltf.h tinygltf)
 
 # FLINT 3 contains Arb, with its headers in FLINT's folder; beside FLINT 2 it is a library of its own, with its headers
 # directly in `include`. The sources include <arb.h> either way. An installed package says which it was built with.

@@ -29,12 +29,12 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/validation/consumer/app/ DESTINATION ${e
   COMPONENT development)
 
 # --- pkg-config ---
-# If there is only a static library, plain `pkg-config --libs` has to name its dependencies. FLINT, Arb and Embree have
-# no .pc file everywhere, so they are named as they were found.
+# If there is only a static library, plain `pkg-config --libs` has to name its dependencies. FLINT, Arb, Embree and
+# tinygltf have no .pc file everywhere, so they are named as they were found.
 if(library_type STREQUAL "STATIC_LIBRARY")
   set(pc_requires "OpenEXR libpng mpfr gmpxx gmp")
   set(pc_libraries "")
-  set(linked ${EXACTFF_FLINT_LIBRARY} ${EMBREE_LIBRARY})
+  set(linked ${EXACTFF_FLINT_LIBRARY} ${EMBREE_LIBRARY} ${EXACTFF_TINYGLTF_LIBRARY})
   if(NOT exactff_arb_is_in_flint)
     list(PREPEND linked ${EXACTFF_ARB_LIBRARY})
   endif()

@@ -78,6 +78,6 @@ else()
   endif()
   set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
       "libgmp-dev, libmpfr-dev, ${flint}, libembree-dev (>= ${EMBREE_VERSION_MAJOR}), libembree-dev (<< ${next_embree}), \
-libopenexr-dev, libpng-dev")
+libopenexr-dev, libpng-dev, libtinygltf-dev")
 endif()
 include(CPack)

@@ -1,5 +1,5 @@
-// Arbitrary bytes as an OBJ, PLY, STL, OFF or View3D file; in the case of OBJ, the bytes after the first 0x1e (ASCII's
-// record separator) are the MTL file `m`. EXACTFF_FUZZ_FILE: a name of the format.
+// Arbitrary bytes as an OBJ, glTF, PLY, STL, OFF or View3D file; in the case of OBJ, the bytes after the first 0x1e
+// (ASCII's record separator) are the MTL file `m`. EXACTFF_FUZZ_FILE: a name of the format.
 //
 // Both modes of the readers are tried. The result is either an InputError with a message, or a scene that keeps its
 // promises and has form factors in [0, 1]. Every writer writes such a scene to a file that reads back to a scene; that

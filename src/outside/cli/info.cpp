@@ -84,11 +84,16 @@ void print_places(const std::vector<PatchSummary>& rows) {
   table.print(std::cout);
 }
 
+// "area", or "area in mm²".
+std::string area_words(const Scene& scene) {
+  return scene.unit() == Unit::kNone ? "area" : "area in " + std::string(name_of(scene.unit())) + "²";
+}
+
 void print_patches(const Scene& scene, const std::vector<PatchSummary>& rows) {
   TextTable table;
   table.add_column("patch");
   table.add_column("faces", Align::kRight);
-  table.add_column("area", Align::kRight);
+  table.add_column(area_words(scene), Align::kRight);
   table.add_columns({"front", "material", "Kd", "Ke", "emits"});
   for (const PatchSummary& row : rows) {
     table.add_row({row.name, std::to_string(row.face_count), six_digits(row.area), front_text(row),
@@ -102,8 +107,8 @@ void print_totals(const Scene& scene, const std::vector<PatchSummary>& rows) {
   std::cout << counted(scene.patches().size(), "patch", "patches") << ", "
             << counted(scene.faces().size(), "face", "faces") << " in "
             << counted(scene.pieces().size(), "convex piece", "convex pieces") << ", "
-            << counted(scene.vertices().size(), "vertex", "vertices") << ", area " << six_digits(total_area(rows))
-            << '\n';
+            << counted(scene.vertices().size(), "vertex", "vertices") << ", " << area_words(scene) << ' '
+            << six_digits(total_area(rows)) << '\n';
 }
 
 // "TITLE: a, b, c and 7 more" or "TITLE: none".
@@ -274,6 +279,7 @@ void print_json(const Scene& scene, const flags::SceneArguments& arguments) {
   json["vertices"] = scene.vertices().size();
   json["faces"] = scene.faces().size();
   json["pieces"] = scene.pieces().size();
+  json["unit"] = scene.unit() == Unit::kNone ? ordered_json() : ordered_json(std::string(name_of(scene.unit())));
   json["area"] = total_area(rows);
   json["open_edges"] = scene.open_edge_count();
   for (int set = 0; set < kTextureSets; ++set) json["textured_faces"].push_back(textured_faces(scene, set));

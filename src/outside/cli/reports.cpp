@@ -250,7 +250,7 @@ Command add_compare(CLI::App& app) {
   args->scene.add_to(*command);
   command->get_option("SCENE")
       ->description(
-          "Scene file (OBJ, PLY, STL, OFF, View3D), @MODEL for a generated scene, or a .study file with several "
+          "Scene file (OBJ, glTF, PLY, STL, OFF, View3D), @MODEL for a generated scene, or a .study file with several "
           "scenes; not needed with --experiment")
       ->required(false);
   command

@@ -354,8 +354,16 @@ ComparisonArguments arguments_of(const StudyLine& line, const std::string& file)
                              "exactff compare --help explains these flags"});
   }
   args.scene.command = nullptr;  // the line has no outputs
-  const std::string& path = args.scene.path;
-  if (!path.starts_with('@')) args.scene.path = (std::filesystem::path(file).parent_path() / path).string();
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  std::string& path = args.scene.path;
+  if (!path.starts_with('@')) {
+    path = (folder / path).string();
+    if (!std::filesystem::exists(path)) {  // perhaps several files
+      const std::string inner = '+' + (folder / "").string();
+      for (std::size_t at = 0; (at = path.find('+', at)) != std::string::npos; at += inner.size())
+        path.replace(at, 1, inner);
+    }
+  }
   if (!args.receivers.file.empty()) {
     args.receivers.file = (std::filesystem::path(file).parent_path() / args.receivers.file).string();
   }

@@ -61,10 +61,14 @@ Scene divided_with_note(const Scene& scene, double length) {
 void SceneArguments::add_to(CLI::App& app) {
   command = &app;
   app.add_option("SCENE", path,
-                 "File (OBJ, PLY, STL, OFF, View3D), - for an OBJ file from standard input, or "
+                 "File (OBJ, glTF, PLY, STL, OFF, View3D), several of them as FILE+FILE, - for an OBJ file from "
+                 "standard input, or "
                  "@MODEL[:SETTING=VALUE,...] for a generated scene: `exactff info @` lists them")
       ->required()
       ->check(is_read());
+  app.add_option("--unit", unit, "Unit of length of files that do not state theirs: mm, cm, m, in or ft")
+      ->type_name("UNIT")
+      ->check(CLI::IsMember({"mm", "cm", "m", "in", "ft"}));
   app.add_option(
          "--patches", patches,
          "What a patch is: groups (g lines; without them, o lines) or faces (each face is a patch NAME:k); or, as "
@@ -96,13 +100,19 @@ void SceneArguments::add_divide_to(CLI::App& app) {
 }
 
 SceneOptions SceneArguments::options() const {
-  return scene_options(patches, skip_bad_faces ? BadFaces::kSkip : BadFaces::kReject);
+  SceneOptions options = scene_options(patches, skip_bad_faces ? BadFaces::kSkip : BadFaces::kReject);
+  if (!unit.empty()) options.unit = unit_named(unit);
+  return options;
 }
 
 Scene SceneArguments::load() const {
   Scene scene = from_standard_input()   ? read_obj(std::cin, kStandardInput, options())
                 : path.starts_with('@') ? models::make_scene(path.substr(1), options())
                                         : read_scene(path, options());
+  if (!unit.empty() && scene.unit() != unit_named(unit) && std::filesystem::exists(path)) {  // one file
+    text::refuse(path, "is in " + std::string(name_of(scene.unit())),
+                 "the file says so, and --unit " + unit + " says otherwise", "leave out --unit");
+  }
   if (command != nullptr) require_not_written(*command, scene.files());
   std::vector<FaceName> face_names = names_file.empty() ? std::vector<FaceName>() : read_names(names_file);
   for (const std::string& text : names) face_names.push_back(face_name(text));

@@ -24,6 +24,7 @@ inline constexpr const char* kStandardInput = "standard input";  // what message
 // write ./@NAME for a file of that name.
 struct SceneArguments {
   std::string path;
+  std::string unit;
   std::string patches = "groups";
   std::vector<std::string> names;  // NAME=SELECTOR
   std::string names_file;

@@ -46,9 +46,12 @@ SceneOptions options_of(const std::string& patches, bool skip_bad_faces) {
   return scene_options(patches, skip_bad_faces ? BadFaces::kSkip : BadFaces::kReject);
 }
 
-Shared read_file(const std::filesystem::path& path, const std::string& patches, bool skip_bad_faces) {
+Shared read_file(const std::filesystem::path& path, const std::string& patches, bool skip_bad_faces,
+                 const std::string& unit) {
   const py::gil_scoped_release released;
-  return shared(read_scene(path, options_of(patches, skip_bad_faces)));
+  SceneOptions options = options_of(patches, skip_bad_faces);
+  if (!unit.empty()) options.unit = unit_named(unit);
+  return shared(read_scene(path, options));
 }
 
 Shared from_model(const std::string& text, const std::string& patches) {
@@ -271,7 +274,7 @@ Shared with_face_names(const SharedScene& self, const std::vector<std::pair<std:
 
 void bind_scene(py::module_& module) {
   py::class_<SharedScene, Shared>(module, "Scene")
-      .def_static("read", &read_file, py::arg("path"), py::arg("patches"), py::arg("skip_bad_faces"))
+      .def_static("read", &read_file, py::arg("path"), py::arg("patches"), py::arg("skip_bad_faces"), py::arg("unit"))
       .def_static("from_model", &from_model, py::arg("text"), py::arg("patches"))
       .def_static(
           "build",
@@ -364,6 +367,11 @@ void bind_scene(py::module_& module) {
            [](const SharedScene& s) {
              const py::gil_scoped_release released;
              return s.scene().open_edge_count();
+           })
+      .def("unit", [](const SharedScene& s) { return std::string(name_of(s.scene().unit())); })
+      .def("files",
+           [](const SharedScene& s) {
+             return std::vector<std::filesystem::path>(s.scene().files().begin(), s.scene().files().end());
            })
       .def("hash", [](const SharedScene& s) { return s.scene().hash(); });
 }

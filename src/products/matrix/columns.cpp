@@ -118,6 +118,7 @@ table::Head head_of(const Scene& scene, std::span<const Selection> from, std::sp
   add(patches, to);
   table::Head head;
   head.set("scene_hash", scene.hash());
+  if (scene.unit() != Unit::kNone) head.set("unit", std::string(name_of(scene.unit())));
   set_options(head, options);
   head.set("from_patches", std::uint64_t{from.size()});
   head.set("to_patches", std::uint64_t{to.size()});

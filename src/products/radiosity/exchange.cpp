@@ -245,6 +245,7 @@ table::Table table_of(const Scene& scene, const Exchange& exchange, const ViewFa
   using table::Strength;
   table::Head head;
   head.set("scene_hash", scene.hash());
+  if (scene.unit() != Unit::kNone) head.set("unit", std::string(name_of(scene.unit())));
   matrix::set_options(head, options);
   table::Rows rows(
       "exchange", std::move(head),

@@ -564,7 +564,7 @@ class Division {
   // With everything but patches and faces.
   SceneBuilder start() const {
     const SceneInside::Data& data = SceneInside::data(scene_);
-    SceneBuilder builder(data.file);
+    SceneBuilder builder(data.file, {.unit = data.unit});
     for (const std::filesystem::path& file : data.files) builder.read_from(file);
     for (const Vec3& v : points_.all()) builder.add_vertex(v);
     for (const Material& material : scene_.materials()) builder.add_material(material);

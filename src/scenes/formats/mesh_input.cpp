@@ -1,5 +1,6 @@
 #include "formats/mesh_input.h"
 
+#include <bit>
 #include <charconv>
 #include <limits>
 #include <utility>
@@ -101,6 +102,35 @@ Scene MeshInput::build() {
   problems_.throw_if_any();
   if (face_count_ == 0) give_up({}, "has no faces", "there is nothing to compute with", "is it " + kind_ + "?");
   return builder_.build();
+}
+
+// --- Shared vertices ---
+
+std::uint32_t SharedVertices::vertex(const Vec3& position, const FilePlace& place) {
+  if (2 * positions_.size() >= slots_.size()) grow();
+  std::uint32_t& slot = slots_[slot_of(position)];
+  if (slot == 0) {
+    positions_.push_back(position);
+    slot = input_.add_vertex(position, place) + 1;
+  }
+  return slot - 1;
+}
+
+std::size_t SharedVertices::slot_of(const Vec3& position) const {
+  std::uint64_t state = seed_;
+  for (const double coordinate : {position.x, position.y, position.z}) {
+    state = (state ^ std::bit_cast<std::uint64_t>(coordinate + 0.0)) * 0x9E3779B97F4A7C15U;
+    state ^= state >> 32U;
+  }
+  std::size_t at = state & (slots_.size() - 1);
+  while (slots_[at] != 0 && positions_[slots_[at] - 1] != position) at = (at + 1) & (slots_.size() - 1);
+  return at;
+}
+
+void SharedVertices::grow() {
+  slots_.assign(2 * slots_.size(), 0);
+  for (std::size_t i = 0; i < positions_.size(); ++i)
+    slots_[slot_of(positions_[i])] = static_cast<std::uint32_t>(i + 1);
 }
 
 }  // namespace exactff::formats

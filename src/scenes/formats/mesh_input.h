@@ -1,7 +1,8 @@
-// What the readers of PLY, STL, OFF and View3D files share: the scene being built, and the problems found so far; and
-// the readers of all formats.
+// What the readers of PLY, STL, glTF, OFF and View3D files share: the scene being built, and the problems found so far;
+// and the readers of all formats.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -56,6 +57,9 @@ class MeshInput {
   void add_face(PatchId patch, MaterialId material, std::vector<std::vector<std::uint32_t>> rings,
                 const FilePlace& place);
   void add_face(PatchId patch, std::vector<std::uint32_t> ring, const FilePlace& place);
+  // Of the face added last.
+  void state_texture(int set, std::vector<TexturePoint> corners) { builder_.state_texture(set, std::move(corners)); }
+  void read_from(std::filesystem::path file) { builder_.read_from(std::move(file)); }
 
   // Warns if the last line of a text has no end.
   void warn_if_cut_off(const text::PlainLines& lines, std::size_t last_line);
@@ -75,12 +79,47 @@ class MeshInput {
   std::size_t face_count_ = 0;
 };
 
+// --- Shared vertices ---
+
+// Vertices of files that repeat them for every triangle. Positions are one vertex if their doubles are equal, so 0 and
+// -0 are; in the order of their first appearance. A hash table with open addressing.
+class SharedVertices {
+ public:
+  explicit SharedVertices(MeshInput& input) : input_(input), slots_(1024) {}
+
+  std::uint32_t vertex(const Vec3& position, const FilePlace& place);
+
+ private:
+  // Where the position is, or the empty slot where it belongs.
+  [[nodiscard]] std::size_t slot_of(const Vec3& position) const;
+  void grow();
+
+  MeshInput& input_;
+  std::vector<std::uint32_t> slots_;  // a number plus 1, or 0 if empty
+  std::vector<Vec3> positions_;
+  // Differs from run to run, so that no file can be made of positions that fall into one slot. The numbers do not
+  // depend on it.
+  std::uint64_t seed_ = static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
+};
+
+// --- Several files ---
+
+// The files that `path` means: see scene_files.h.
+[[nodiscard]] std::vector<std::filesystem::path> files_named(const std::filesystem::path& path);
+[[nodiscard]] Scene read_several(const std::filesystem::path& path, const std::vector<std::filesystem::path>& files,
+                                 const SceneOptions& options);
+
 // --- Readers ---
+
+// With the unit that the file states, if it does.
+[[nodiscard]] SceneOptions with_unit_of(std::string_view bytes, SceneOptions options);
 
 // The readers, each of one format. `bytes` is the whole file, `path` names it in messages.
 
 // Each throws InputError with all problems found.
 [[nodiscard]] Scene read_obj(std::string_view text, const std::filesystem::path& path, const SceneOptions& options);
+// `bytes`: a .gltf file, or a .glb file.
+[[nodiscard]] Scene read_gltf(std::string_view bytes, const std::filesystem::path& path, const SceneOptions& options);
 [[nodiscard]] Scene read_off(std::string_view text, const std::filesystem::path& path, const SceneOptions& options);
 [[nodiscard]] Scene read_ply(std::string_view bytes, const std::filesystem::path& path, const SceneOptions& options);
 [[nodiscard]] Scene read_stl_text(std::string_view text, const std::filesystem::path& path,

@@ -256,7 +256,6 @@ void ObjReader::read_normal(std::string_view values) {
 // A lone number is u; v is 0 then. No form factor depends on them, so an unreadable one is no problem.
 void ObjReader::read_texture(std::string_view values) {
   values = before_comment(values);
-  TexturePoint point;
   const text::ParsedNumber u = text::parse_number(text::take_word(values));
   const std::string_view second = text::take_word(values);
   const text::ParsedNumber v = text::parse_number(second.empty() ? "0" : second);
@@ -535,7 +534,7 @@ Scene formats::read_obj(std::string_view text, const fs::path& path, const Scene
   const kernel::StandardArithmetic arithmetic;
   if (text.empty())
     throw InputError({path.string(), 0, "is empty", "there is nothing to compute with", "give a Wavefront OBJ file"});
-  return ObjReader(text, path, options).run();
+  return ObjReader(text, path, with_unit_of(text, options)).run();
 }
 
 Scene read_obj(std::istream& in, const fs::path& name, const SceneOptions& options) {

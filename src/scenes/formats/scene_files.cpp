@@ -18,11 +18,11 @@ namespace exactff {
 namespace formats {
 namespace {
 
-enum class Format { kObj, kPly, kStlText, kStlBinary, kOff, kView3d };
+enum class Format { kObj, kGltf, kPly, kStlText, kStlBinary, kOff, kView3d };
 
 // A format that exactff does not read.
 struct ForeignKind {
-  std::string_view name;       // "a glTF file"
+  std::string_view name;       // "a Collada file"
   std::string_view converter;  // completes "convert it, for example with ..."
 };
 
@@ -45,7 +45,6 @@ constexpr ForeignKind kInp{"an Abaqus, CalculiX or AVS file (.inp)", kMeshio};
 constexpr ForeignKind kNastran{"a Nastran file", kMeshio};
 constexpr ForeignKind kVtk{"a VTK file", kMeshio};
 constexpr ForeignKind kVtp{"a VTK file of polygons", "ParaView: save as PLY, without names"};
-constexpr ForeignKind kGltf{"a glTF file", kAssimp};
 constexpr ForeignKind kCollada{"a Collada file", kAssimp};
 constexpr ForeignKind kFbx{"an FBX file", kAssimp};
 constexpr ForeignKind k3ds{"a 3DS file", kAssimp};
@@ -79,8 +78,7 @@ struct Signature {
 };
 
 // The first bytes of a file.
-constexpr std::array<Signature, 31> kSignatures = {{
-    {"glTF", {"a binary glTF file (.glb)", kAssimp}},
+constexpr std::array<Signature, 30> kSignatures = {{
     {"# vtk DataFile", kVtk},
     {"Kaydara FBX Binary", kFbx},
     {"; FBX", kFbx},
@@ -121,7 +119,7 @@ struct Extension {
 };
 
 // They count where the content tells nothing, and is not that of an OBJ file.
-constexpr std::array<Extension, 37> kExtensions = {{
+constexpr std::array<Extension, 35> kExtensions = {{
     {".inp", kInp},
     {".bdf", kNastran},
     {".nas", kNastran},
@@ -134,8 +132,6 @@ constexpr std::array<Extension, 37> kExtensions = {{
     {".vtk", kVtk},
     {".vtu", kVtk},
     {".vtp", kVtp},
-    {".gltf", kGltf},
-    {".glb", kGltf},
     {".pbrt", kPbrt},
     {".dae", kCollada},
     {".3ds", k3ds},
@@ -180,8 +176,7 @@ ForeignKind markup_kind(std::string_view head) {
 
 ForeignKind json_kind(std::string_view head) {
   if (contains(head, "\"BuildingSurface:Detailed\"") || contains(head, "\"Building\"")) return kEpJson;
-  const bool gltf = contains(head, "\"asset\"") || contains(head, "\"meshes\"") || contains(head, "\"accessors\"");
-  return gltf ? kGltf : ForeignKind{"a JSON file", "its own program"};
+  return {"a JSON file", "its own program"};
 }
 
 // The first group of a DXF file: code 0, value SECTION.
@@ -273,6 +268,18 @@ bool is_obj_keyword(std::string_view word) {
   return std::ranges::find(kKeywords, word) != kKeywords.end();
 }
 
+// `start` is the text without leading blanks.
+bool is_gltf(std::string_view start, std::string_view extension) {
+  if (start.starts_with("glTF") || extension == ".glb" || extension == ".gltf") return true;
+  return start.starts_with("{") &&
+         (contains(start, "\"asset\"") || contains(start, "\"meshes\"") || contains(start, "\"accessors\""));
+}
+
+std::string_view without_blanks(std::string_view head) {
+  head.remove_prefix(std::min(head.find_first_not_of(" \t\r\n"), head.size()));
+  return head;
+}
+
 // The extension in lower case, with its dot.
 std::string lower_extension(const std::filesystem::path& path) {
   return text::in_lower_case(path.extension().string());
@@ -283,6 +290,7 @@ Format format_of(std::string_view bytes, const std::filesystem::path& path) {
   const std::string_view head = without_mark(bytes.substr(0, kLookedAt));
   const std::string extension = lower_extension(path);
   if (is_ply(head)) return Format::kPly;
+  if (is_gltf(without_blanks(head), extension)) return Format::kGltf;
   if (is_binary_stl(bytes)) return Format::kStlBinary;
   const std::string_view word = first_word(head);
   const bool binary = contains(head, std::string_view("\0", 1));
@@ -305,10 +313,10 @@ std::optional<ForeignKind> foreign_kind(std::string_view bytes, const std::files
   if (is_dxf(head)) return kDxf;
   if (is_iges(head)) return kIges;
   if (is_3ds(bytes)) return k3ds;
-  std::string_view start = head;
-  start.remove_prefix(std::min(start.find_first_not_of(" \t\r\n"), start.size()));
+  const std::string_view start = without_blanks(head);
   if (start.starts_with("ISO-10303-21;")) return step_kind(head);
   if (start.starts_with("<")) return markup_kind(head);
+  if (is_gltf(start, lower_extension(path))) return std::nullopt;
   if (start.starts_with("{")) return json_kind(head);
   if (format_of(bytes, path) != Format::kObj || is_obj_keyword(first_word(head))) return std::nullopt;
   const std::string extension = lower_extension(path);
@@ -334,6 +342,22 @@ void write_wavefront(const Scene& scene, const std::filesystem::path& path, Scen
   result.files.push_back({path, formats::write_obj(scene, mtl.filename().string(), losses)});
 }
 
+// In a comment.
+void state_unit(std::string& bytes, std::string_view extension, Unit unit, formats::Losses& losses) {
+  if (unit == Unit::kNone) return;
+  const std::string text = "unit " + std::string(name_of(unit)) + '\n';
+  if (extension == ".obj") {
+    bytes.insert(0, "# " + text);
+  } else if (extension == ".off") {
+    bytes.insert(bytes.find('\n') + 1, "# " + text);
+  } else if (extension == ".ply") {
+    bytes.insert(bytes.find('\n', bytes.find('\n') + 1) + 1, "comment " + text);
+  } else {
+    losses.add("the " + text.substr(0, text.size() - 1) + " is lost", "the format has no place for it",
+               "give --unit where you read it");
+  }
+}
+
 struct Writer {
   std::string_view extension;
   std::string (*text)(const Scene&, formats::Losses&);
@@ -356,7 +380,8 @@ SceneFiles scene_files(const Scene& scene, const std::filesystem::path& path, En
   const bool wavefront = extension == ".obj";
   if (!wavefront && writer == kWriters.end()) {
     throw InputError({path.string(), 0, "no format is known for the extension " + text::in_quotes(extension),
-                      "the extension says which format to write", "name a file .obj, .ply, .stl, .off or .vs3"});
+                      "the extension says which format to write",
+                      "name a file .obj, .ply, .stl, .off or .vs3; glTF is only read"});
   }
   if (encoding == Encoding::kBinary && (wavefront || writer->binary == nullptr)) {
     throw InputError(
@@ -377,6 +402,7 @@ SceneFiles scene_files(const Scene& scene, const std::filesystem::path& path, En
                "only lightmaps need them; write OBJ to keep set 0");
     break;
   }
+  state_unit(result.files.back().bytes, extension, scene.unit(), losses);
   result.losses = losses.take();
   return result;
 }
@@ -385,18 +411,19 @@ SceneFiles scene_files(const Scene& scene, const std::filesystem::path& path, En
 
 namespace {
 
-constexpr const char* kAnyFormat = "an OBJ, PLY, STL, OFF or View3D file";
+constexpr const char* kAnyFormat = "an OBJ, glTF, PLY, STL, OFF or View3D file";
 
 }  // namespace
 
-Scene read_scene(std::string_view bytes, const std::filesystem::path& path, const SceneOptions& options) {
+Scene read_scene(std::string_view bytes, const std::filesystem::path& path, const SceneOptions& given) {
+  const SceneOptions options = formats::with_unit_of(bytes, given);
   const kernel::StandardArithmetic arithmetic;
   const std::string file = path.string();
   if (bytes.empty())
     throw InputError({file, 0, "is empty", "there is nothing to compute with", std::string("give ") + kAnyFormat});
   if (const auto kind = formats::foreign_kind(bytes, path)) {
     throw InputError({file, 0, "is " + std::string(kind->name),
-                      std::string("exactff reads OBJ, PLY, STL, OFF and View3D"),
+                      std::string("exactff reads OBJ, glTF, PLY, STL, OFF and View3D"),
                       "convert it, for example with " + std::string(kind->converter)});
   }
   const formats::Format format = formats::format_of(bytes, path);
@@ -405,6 +432,8 @@ Scene read_scene(std::string_view bytes, const std::filesystem::path& path, cons
       return formats::read_ply(bytes, path, options);
     case formats::Format::kStlBinary:
       return formats::read_stl_binary(bytes, path, options);
+    case formats::Format::kGltf:
+      return formats::read_gltf(bytes, path, options);
     default:
       break;
   }
@@ -422,6 +451,8 @@ Scene read_scene(std::string_view bytes, const std::filesystem::path& path, cons
 }
 
 Scene read_scene(const std::filesystem::path& path, const SceneOptions& options) {
+  const std::vector<std::filesystem::path> files = formats::files_named(path);
+  if (files.size() > 1) return formats::read_several(path, files, options);
   return SceneInside::read_from(path, read_scene(text::read_file(path, kAnyFormat), path, options));
 }
 

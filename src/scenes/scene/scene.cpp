@@ -38,6 +38,8 @@ std::span<const Patch> Scene::patches() const { return data().patches; }
 std::span<const Face> Scene::faces() const { return data().faces; }
 std::span<const Piece> Scene::pieces() const { return data().pieces; }
 std::span<const Problem> Scene::warnings() const { return data().warnings; }
+Unit Scene::unit() const { return data().unit; }
+
 std::span<const std::filesystem::path> Scene::files() const { return data().files; }
 
 std::span<const std::uint32_t> Scene::corners(const Piece& piece) const {

@@ -33,7 +33,8 @@ struct Scene::Data {
   const SceneId id = next_id();
   std::string file;                          // its name in messages
   std::vector<std::filesystem::path> files;  // that it was read from
-  std::vector<Vec3> vertices;                // finite, no negative zero
+  Unit unit = Unit::kNone;
+  std::vector<Vec3> vertices;  // finite, no negative zero
   std::vector<Material> materials;
   std::vector<Patch> patches;
   std::unordered_map<std::string, PatchId> patch_by_name;

@@ -7,13 +7,42 @@
 
 #include "kernel/expect.h"
 #include "kernel/float_environment.h"
+#include "kernel/numbers.h"
 #include "kernel/vec.h"
 #include "scene/scene.h"
 #include "scene/triangulation.h"
 #include "text/names.h"
+#include "text/phrases.h"
 #include "text/text_lines.h"
 
 namespace exactff {
+namespace {
+
+struct UnitRow {
+  Unit unit;
+  std::string_view name;
+  int tenths;  // of a millimetre
+};
+constexpr std::array<UnitRow, 6> kUnits = {{{Unit::kNone, "", 0},
+                                            {Unit::kMillimetre, "mm", 10},
+                                            {Unit::kCentimetre, "cm", 100},
+                                            {Unit::kMetre, "m", 10000},
+                                            {Unit::kInch, "in", 254},
+                                            {Unit::kFoot, "ft", 3048}}};
+
+int tenths_of_millimetres(Unit unit) { return std::ranges::find(kUnits, unit, &UnitRow::unit)->tenths; }
+
+}  // namespace
+
+std::string_view name_of(Unit unit) { return std::ranges::find(kUnits, unit, &UnitRow::unit)->name; }
+
+Unit unit_named(std::string_view text) {
+  const auto* const found = std::ranges::find(kUnits, text, &UnitRow::name);
+  if (found != kUnits.end() && found->unit != Unit::kNone) return found->unit;
+  throw InputError({.what = text::in_quotes(text) + " is no unit of length",
+                    .why = "units are mm, cm, m, in and ft",
+                    .suggestion = "choose one of them"});
+}
 
 using Rings = std::vector<std::vector<std::uint32_t>>;
 
@@ -30,6 +59,7 @@ struct SceneBuilder::State {
   std::vector<std::pair<FaceId, Vec3>> stated_normals;
 
   void check_vertices();
+  void convert_unit();
   void check_materials();
   void check_names();
   bool check_indices(const Face& face);
@@ -55,6 +85,7 @@ struct SceneBuilder::State {
 SceneBuilder::SceneBuilder(std::string file, SceneOptions options) : state_(std::make_unique<State>()) {
   state_->options = options;
   state_->data->file = std::move(file);
+  state_->data->unit = options.unit;
 }
 SceneBuilder::SceneBuilder(SceneBuilder&&) noexcept = default;
 SceneBuilder& SceneBuilder::operator=(SceneBuilder&&) noexcept = default;
@@ -136,6 +167,8 @@ void SceneBuilder::mark_as_twin() {
 
 void SceneBuilder::warn(Problem warning) { state().warnings.add(std::move(warning)); }
 
+void SceneBuilder::set_unit(Unit unit) { state().data->unit = unit; }
+
 void SceneBuilder::read_from(std::filesystem::path file) { state().data->files.push_back(std::move(file)); }
 
 Scene SceneBuilder::build() {
@@ -144,6 +177,7 @@ Scene SceneBuilder::build() {
   const std::unique_ptr<State> taken = std::exchange(state_, std::make_unique<State>());
   State& state = *taken;
   state.check_vertices();
+  state.convert_unit();
   state.check_materials();
   state.check_names();
   if (state.problems.empty()) {
@@ -168,6 +202,28 @@ void SceneBuilder::State::check_vertices() {
     problems.add({data->file, 0, "vertex " + std::to_string(i + 1) + " is not finite",
                   "a coordinate is one exact number", "give finite coordinates"});
   }
+}
+
+void SceneBuilder::State::convert_unit() {
+  const Unit from = std::exchange(data->unit, options.convert_to == Unit::kNone ? data->unit : options.convert_to);
+  if (from == data->unit || !problems.empty()) return;
+  if (from == Unit::kNone) {
+    return problems.add({data->file, 0, "does not say its unit of length",
+                         "another file is in " + std::string(name_of(data->unit)), "give --unit"});
+  }
+  const kernel::Rational factor(kernel::Integer(tenths_of_millimetres(from)), tenths_of_millimetres(data->unit));
+  std::size_t rounded = 0;
+  for (Vec3& v : data->vertices) {
+    const Vec3 before = v;
+    for (double Vec3::*const c : {&Vec3::x, &Vec3::y, &Vec3::z})
+      v.*c = kernel::nearest_double(kernel::to_rational(before.*c) * factor);
+    const kernel::RationalVec3 back = kernel::to_rational(kernel::is_finite(v) ? v : Vec3{});
+    if (!kernel::is_zero(back - kernel::to_rational(before) * factor)) ++rounded;
+  }
+  check_vertices();
+  warnings.add(
+      {data->file, 0, "was converted from " + std::string(name_of(from)) + " to " + std::string(name_of(data->unit)),
+       rounded == 0 ? "exactly" : text::counted_of(rounded, data->vertices.size(), "vertice") + " rounded, once", ""});
 }
 
 void SceneBuilder::State::check_materials() {

@@ -69,6 +69,7 @@ Rings rings_of(const Face& face) { return face.piece_count > 0 ? face.rings : Ri
 
 SceneCopy::SceneCopy(const Scene& scene, const Vec3& origin)
     : scene_(scene), builder_({}, {.bad_faces = BadFaces::kSkip}) {
+  builder_.set_unit(scene.unit());
   for (const Vec3& v : scene.vertices()) builder_.add_vertex({v.x - origin.x, v.y - origin.y, v.z - origin.z});
   for (const Material& material : scene.materials()) builder_.add_material(material);
   for (const Patch& patch : scene.patches()) (void)builder_.patch(patch.name);
@@ -158,6 +159,7 @@ std::unique_ptr<SceneInside::Data> copy_of(const SceneInside::Data& data) {
   auto copy = std::make_unique<SceneInside::Data>();
   copy->file = data.file;
   copy->files = data.files;
+  copy->unit = data.unit;
   copy->vertices = data.vertices;
   copy->materials = data.materials;
   copy->patches = data.patches;

@@ -617,7 +617,7 @@ std::vector<std::vector<std::uint32_t>> triangles_of(const Scene& scene, const P
 
 Scene triangulated(const Scene& scene) {
   const kernel::StandardArithmetic arithmetic;
-  SceneBuilder builder;
+  SceneBuilder builder({}, {.unit = scene.unit()});
   for (const Vec3& vertex : scene.vertices()) builder.add_vertex(vertex);
   for (const Material& material : scene.materials()) builder.add_material(material);
   for (const Patch& patch : scene.patches()) (void)builder.patch(patch.name);

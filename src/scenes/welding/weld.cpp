@@ -560,7 +560,7 @@ void require_small_moves(Welding& welding, const Scene& scene, double length) {
 
 WeldedScene built(const Scene& scene, Welding& welding, double length) {
   const SceneInside::Data& data = SceneInside::data(scene);
-  SceneBuilder builder(data.file);
+  SceneBuilder builder(data.file, {.unit = data.unit});
   for (const std::filesystem::path& file : data.files) builder.read_from(file);
   for (const Material& material : scene.materials()) builder.add_material(material);
   for (const Patch& patch : scene.patches()) (void)builder.patch(patch.name);

@@ -66,13 +66,14 @@ class Scene:
 
     @classmethod
     def read(cls, path: Union[str, os.PathLike[str]], *, patches: str = "groups",
-             skip_bad_faces: bool = False) -> Scene:
-        """Reads an OBJ, PLY, STL, OFF or View3D file. `patches` says what a patch is: see `with_patches`.
+             skip_bad_faces: bool = False, unit: str = "") -> Scene:
+        """Reads an OBJ, glTF, PLY, STL, OFF or View3D file, or several of them as ``"a.stl+b.glb"``. `patches` says
+        what a patch is: see `with_patches`. `unit` ("mm", "cm", "m", "in", "ft") is that of files that state none.
 
         Raises InputError with every problem and its line. Warnings of the file are ModellingWarning."""
         file = os.path.abspath(os.fspath(path))
-        scene = cls._made(_exactff.Scene.read(os.fspath(path), patches, skip_bad_faces), os.path.basename(file))
-        scene._read = (file,)
+        scene = cls._made(_exactff.Scene.read(os.fspath(path), patches, skip_bad_faces, unit), os.path.basename(file))
+        scene._read = tuple(os.path.abspath(name) for name in scene._scene.files())
         return scene
 
     @classmethod
@@ -186,6 +187,11 @@ class Scene:
     def faces_of(self, name: str) -> list[int]:
         """Indices of the faces of ``NAME``, ``NAME:k`` or a pattern, without ignored ones."""
         return self._scene.faces_of(name)
+
+    @property
+    def unit(self) -> str:
+        """The unit of length: "mm", "cm", "m", "in", "ft", or "" if none is known."""
+        return self._scene.unit()
 
     @property
     def hash(self) -> str:
