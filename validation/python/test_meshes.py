@@ -106,6 +106,7 @@ def test_collapsed_and_mixed_cells():
     ([("hexa_prism", [[0, 1, 2, 3, 4, 5]])], r"cells\[0\] \(hexa_prism\): cells of this type are not taken"),
     ([("polyhedron8", [[[0, 1, 2], [0, 2, 3]]])], "cells of this type are not taken"),
     ([("quad", [[0, 1, 2]])], "each row is a cell of 4 corners"),
+    ([("tetra", HEXAHEDRON)], "each row is a cell of 4 corners"),
     ([("triangle", [[0.0, 1.0, 2.0]])], "indices are whole numbers"),
     ([("line", [[0, 1]])], "the mesh has no faces"),
     ([], "the mesh has no faces"),
@@ -126,6 +127,9 @@ def test_points_count_where_cells_use_them():
     assert plane.vertices.tolist() == POINTS[:4].tolist() and plane.names == ("a", "b")
     with pytest.raises(exactff.InputError, match="patch"):
         exactff.Scene.from_mesh(POINTS, [("hexahedron", HEXAHEDRON)], ["a", "b"])
+    with pytest.raises(exactff.InputError, match="the patch of each face is 'lid'.*names='lid' alone"):
+        exactff.Scene.from_mesh(POINTS, [[0, 1, 3], [0, 1, 2], [1, 2, 3]], "lid")
+    assert exactff.Scene.from_mesh(POINTS, [[0, 1, 3]], names="lid").names == ("lid",)
 
 
 def test_objects_of_other_packages_are_taken_by_their_arrays():
@@ -204,6 +208,16 @@ def test_the_smallest_set_of_a_cell_names_it():
     assert exactff.Scene.from_meshio(mesh, "cell_tags", {-1: "one"}).names == ("one", "cell_tags_-2", "default")
     with pytest.raises(exactff.InputError, match="the mesh has no 'part'.*choose from"):
         exactff.Scene.from_meshio(mesh, "part")
+    with pytest.raises(exactff.InputError, match="a list is no mesh of meshio"):
+        exactff.Scene.from_meshio([mesh])  # type: ignore[arg-type]
+
+
+def test_a_package_that_meshio_lacks_is_named(tmp_path, monkeypatch):
+    pytest.importorskip("meshio")
+    monkeypatch.setitem(sys.modules, "h5py", None)
+    (tmp_path / "room.med").write_text("x")
+    with pytest.raises(exactff.InputError, match="room.med: meshio lacks a package.*h5py.*install it"):
+        exactff.Scene.from_meshio(tmp_path / "room.med")
 
 
 # --- python3 -m exactff ---
@@ -220,7 +234,7 @@ def test_convert_takes_what_the_program_and_meshio_read(tmp_path):
     room(meshio).write(tmp_path / "room.msh", file_format="gmsh22")
     assert convert(tmp_path / "room.msh", tmp_path / "room.obj") == f"wrote {tmp_path / 'room.obj'}\n"
     assert set(exactff.Scene.read(tmp_path / "room.obj").names) == {"a box", "lamp"}
-    assert "already exists" in convert(tmp_path / "room.msh", tmp_path / "room.obj", code=2)
+    assert "or replace it with --force" in convert(tmp_path / "room.msh", tmp_path / "room.obj", code=2)
     assert "warning: " in convert(CORNELL, tmp_path / "room.obj.stl")
     before = (tmp_path / "room.obj").read_bytes()
     assert "is read and would be replaced" in convert(tmp_path / "room.obj", tmp_path / "room.obj", "--force", code=2)

@@ -333,6 +333,14 @@ void record(const CheckArguments& args, const check::Report& report) {
   std::cout << "Baseline: " << text::printable(args.write_baseline) << '\n';
 }
 
+// Limits that a program of a scoreboard exceeds.
+void print_broken(const check::Score& score) {
+  for (const check::Verdict& verdict : score.report.verdicts) {
+    if (verdict.passed) continue;
+    std::cerr << "failed: " << text::printable(score.program + ": " + check::sentence(verdict)) << '\n';
+  }
+}
+
 void print_doubts(const CheckArguments& args, const check::Report& report, const std::string& of) {
   if (args.github) std::cout << check::github_annotations(report);
   for (const std::string& warning : check::warnings(report)) {
@@ -361,8 +369,9 @@ void refuse_flags_of_one(const CheckArguments& args) {
         std::pair("--error-image", &args.error_image), std::pair("--baseline", &args.baseline),
         std::pair("--write-baseline", &args.write_baseline)}) {
     if (file->empty()) continue;
-    text::refuse(std::string(flag) + " is given with a scoreboard", "it is for the report on one candidate",
-                 "use -o DIR, which holds JSON and JUnit XML, or check one candidate");
+    text::refuse(std::string(flag) + " is given with a scoreboard",
+                 "it is for the report on one candidate, without -o and against no suite",
+                 "use -o DIR, which holds JSON and JUnit XML");
   }
 }
 
@@ -393,6 +402,7 @@ int check_several(const CheckArguments& args) {
   }
   bool passed = true;
   for (const check::Score& score : board.scores) {
+    print_broken(score);
     print_doubts(args, score.report, score.program + ": ");
     passed = passed && score.report.passed();
   }

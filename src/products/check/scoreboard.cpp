@@ -26,7 +26,9 @@ struct Part {
   const Statistics* statistics = nullptr;  // null if the program answered none of its questions
   std::size_t cases = 0, limits = 0, limits_kept = 0;
 
-  [[nodiscard]] std::size_t answered() const { return statistics ? statistics->rows - statistics->not_finite : 0; }
+  [[nodiscard]] std::size_t not_finite() const { return statistics ? statistics->not_finite : 0; }
+  [[nodiscard]] std::size_t answered() const { return statistics ? statistics->rows - not_finite() : 0; }
+  [[nodiscard]] bool passed() const { return limits == limits_kept && not_finite() == 0; }
 };
 
 Part part_of(const Report& report, const Level* level = nullptr) {
@@ -56,9 +58,9 @@ std::string digits(double relative) {
 // Without an error, all digits are right; without an answer, there is nothing to say.
 std::vector<std::string> cells_of(const Score& score, const Level* level = nullptr) {
   const Part part = part_of(score.report, level);
-  std::vector<std::string> cells = {score.program, part.limits == part.limits_kept ? "passed" : "FAILED",
+  std::vector<std::string> cells = {score.program, part.passed() ? "passed" : "FAILED",
                                     of(part.answered(), part.cases)};
-  if (level && part.answered() == 0) cells[1] = "not asked";
+  if (level && part.statistics == nullptr) cells[1] = "not asked";
   const Distribution none, &errors = part.answered() ? part.statistics->absolute : none;
   for (const double error : {errors.max, errors.rms, errors.median, errors.p90, errors.p99}) {
     cells.push_back(part.answered() ? text::short_number(error, 2) : "");
@@ -81,10 +83,10 @@ std::vector<std::vector<std::string>> level_cells(const Scoreboard& board) {
     row = {score.program, score.report.passed() ? "passed" : "FAILED"};
     for (const Level& level : score.report.levels) {
       const Part part = part_of(score.report, &level);
-      row.push_back(part.answered() == 0
-                        ? "not asked"
-                        : of(part.answered(), part.cases) + ": " + digits(part.statistics->relative.median) +
-                              " digits, worst " + text::short_number(part.statistics->absolute.max, 2));
+      row.push_back(part.statistics == nullptr ? "not asked" : of(part.answered(), part.cases));
+      if (part.answered() == 0) continue;
+      row.back() += ": " + digits(part.statistics->relative.median) + " digits, worst " +
+                    text::short_number(part.statistics->absolute.max, 2);
     }
     row.push_back(score.seconds ? text::duration(*score.seconds) : "");
   }

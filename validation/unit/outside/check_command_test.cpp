@@ -282,6 +282,7 @@ TEST_F(CheckCommand, SeveralCandidatesAreAScoreboard) {
   EXPECT_HOLDS(both.output, "| right | passed | 6 of 6 | 0 |");
   EXPECT_HOLDS(both.output, "| wrong | FAILED | 6 of 6 | 0.12 |");
   EXPECT_HOLDS(both.output, "1 of 2 | 2.5 s |\n");
+  EXPECT_HOLDS(both.error, "failed: wrong: max-abs: 0.125 is above the limit 0.1");
   EXPECT_HOLDS(contents(path("board/index.html")), "Every limit is kept by 1 of 2 programs.");
   EXPECT_EQ(run({"--max-rel", "1"}).exit_code, 1);
   EXPECT_EQ(run_program(EXACTFF_PROGRAM, {"check", truth_, right, right, "-o", path("board")}).exit_code, 0);

@@ -346,12 +346,14 @@ TEST_F(CheckOfTables, ASuiteIsGradedOnEachLevel) {
   EXPECT_TRUE(verdict_on(some, "max-abs", "hard").passed);
   const std::string lines = markdown(board);
   EXPECT_HOLDS(lines, "| some    | FAILED | 2 of 70: all digits, worst 0.0047 | not asked | not asked | 1 of 38: all");
+  EXPECT_HOLDS(lines, " 0 of 66 |");  // what is no number was asked all the same
   const auto folder = directory_.path() / "board";
   check::write(board, folder);
   const auto json = nlohmann::json::parse(validation::text_of(folder / "scoreboard.json"));
   EXPECT_EQ(json["programs"][0]["levels"][0]["answered"], 2);
   EXPECT_EQ(json["programs"][0]["levels"][3]["limits_kept"], 1);
   EXPECT_EQ(json["programs"][1]["levels"][1]["answered"], 0);
+  EXPECT_HOLDS(validation::text_of(folder / "index.html"), ">FAILED</td><td data-label=\"answered\">0 of 66</td>");
   EXPECT_HOLDS(validation::text_of(folder / "index.html"), "Level: crowded");
   const auto unknown = directory_.write("unknown.csv", "question,value\nplates-0,1\n");
   EXPECT_HOLDS(complaint([&] { (void)compare(suite, unknown); }), "the truth has no question 'plates-0'");

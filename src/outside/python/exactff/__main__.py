@@ -38,7 +38,7 @@ def _main() -> int:
     try:
         _scene(given.IN).write(given.OUT, existing=existing)
     except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
+        print(f"error: {error}".replace("existing='replace'", "--force"), file=sys.stderr)
         return 2
     print(f"wrote {given.OUT}")
     return 0

@@ -243,6 +243,9 @@ def _patches(patch: Any, names: Any, faces: int) -> tuple[Ints, list[str]]:
             refuse(f"there are {len(names)} names and no patch of each face", "faces belong to patches",
                    "give patch=, an integer for each face")
         return np.zeros(faces, np.int64), list(names or ["default"])
+    if isinstance(patch, str):
+        refuse(f"the patch of each face is {patch!r}", "its letters would be the names of the faces",
+               f"give one integer, or name, for each face; for a single patch, names={patch!r} alone")
     column = np.asarray(patch)
     if column.dtype.kind == "U":
         words: Any = column.tolist()

@@ -94,7 +94,7 @@ def _block(kind: str, data: Any, where: str, first: int) -> _Block:
     table = whole_numbers(data, where)
     corners = _CORNERS.get(base, max(table.shape[-1], 3))
     table = table if table.size else table.reshape(0, corners)
-    if table.ndim != 2 or table.shape[1] < corners:
+    if table.ndim != 2 or table.shape[1] < corners or kind == base != "polygon" and table.shape[1] > corners:
         refuse(f"{where} has the shape {table.shape}", f"each row is a cell of {corners} corners", "check the array")
     if table.shape[1] > corners:
         warn(f"{where}: curved cells count as straight ones between their {corners} corners")
@@ -256,6 +256,9 @@ def read(path: Any) -> Any:
     with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
         try:
             mesh = library.read(name)
+        except ImportError as error:
+            refuse(f"{name}: meshio lacks a package that this format needs", str(error),
+                   "install it: Debian's python3-h5py for MED, XDMF and CGNS, python3-netcdf4 for Exodus")
         except (Exception, SystemExit) as error:  # of any kind, where a file is cut off
             failure = f"{type(error).__name__}: {error}"
     said = " ".join(output.getvalue().split())
@@ -276,6 +279,9 @@ def meshio() -> Any:
 
 def build_meshio(mesh: Any, patches: Optional[str], names: Any, materials: Any, skip_bad_faces: bool) -> Any:
     """Makes the scene of a meshio.Mesh."""
+    if not hasattr(mesh, "cell_data"):
+        refuse(f"a {type(mesh).__name__} is no mesh of meshio", "it has no cells with data",
+               "give the path of a file or a meshio.Mesh; arrays go to from_mesh")
     blocks = _blocks(mesh.cells)
     dimensions = np.concatenate([np.full(len(block.cells()), 3 if block.type in _SIDES else 2) for block in blocks])
     key = _key(mesh, patches)
