@@ -174,15 +174,19 @@ constexpr std::size_t kHead = 20;  // of a .glb file up to its JSON
 
 std::string_view json_of(std::string_view bytes, MeshInput& input) {
   if (!bytes.starts_with("glTF")) return bytes;
-  std::uint32_t length = 0;
-  if (bytes.size() >= kHead) {
-    for (std::size_t i = 16; i-- > 12;) length = length << 8U | static_cast<unsigned char>(bytes[i]);
+  const auto length_at = [&](std::size_t place) {
+    std::uint32_t length = 0;
+    for (std::size_t i = place + 4; i-- > place;) length = length << 8U | static_cast<unsigned char>(bytes[i]);
+    return length;
+  };
+  const auto give_up = [&](const char* what, const char* why) {
+    input.give_up(at_byte(bytes.size()), what, why, "is the file complete?");
+  };
+  if (bytes.size() < kHead || length_at(12) > bytes.size() - kHead) {
+    give_up("the file ends within its JSON", "a .glb file begins with all of it");
   }
-  if (bytes.size() < kHead || length > bytes.size() - kHead) {
-    input.give_up(at_byte(bytes.size()), "the file ends within its JSON", "a .glb file begins with all of it",
-                  "is the file complete?");
-  }
-  return bytes.substr(kHead, length);
+  if (length_at(8) > bytes.size()) give_up("the file ends before all that its head promises", "buffers are cut off");
+  return bytes.substr(kHead, length_at(12));
 }
 
 std::vector<BufferForm> check_form(std::string_view bytes, MeshInput& input) {

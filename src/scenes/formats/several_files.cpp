@@ -33,14 +33,18 @@ std::vector<fs::path> files_named(const fs::path& path) {
   std::error_code ignored;
   const std::string all = path.string();
   std::vector<fs::path> files;
+  bool some_exist = false;
   for (std::size_t begin = 0; begin <= all.size();) {
     std::size_t end = all.size();
     const auto is_file = [&] { return fs::exists(all.substr(begin, end - begin), ignored); };
     while (end != std::string::npos && end > begin && !is_file()) end = all.rfind('+', end - 1);
-    if (end == std::string::npos || end <= begin) return {path};
+    const bool exists = end != std::string::npos && end > begin;
+    if (!exists) end = std::min(all.find('+', begin), all.size());  // its own name, to complain about
+    some_exist = some_exist || exists;
     files.emplace_back(all.substr(begin, end - begin));
     begin = end + 1;
   }
+  if (!some_exist) return {path};
   return files;
 }
 
