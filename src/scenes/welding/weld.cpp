@@ -21,6 +21,10 @@
 // fewer faces, or follows a change of positions. So (faces, positions, corners that faces lack, edges with ends that
 // differ in a coordinate) falls lexicographically.
 #include <algorithm>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <boost/geometry/strategies/strategies.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -55,60 +59,25 @@ using Place = std::tuple<double, double, double>;
 Place key_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 double& coordinate(Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-// Points by halves along the axis in which they extend the most.
+namespace bg = boost::geometry;
 class PointTree {
  public:
-  PointTree(std::span<const Vec3> at, std::vector<Id> points) : at_(at), points_(std::move(points)) {
-    cuts_.resize(points_.size());
-    build(0, points_.size());
+  PointTree(std::span<const Vec3> at, const std::vector<Id>& points) {
+    std::vector<Entry> entries;
+    for (const Id p : points) entries.push_back({{at[p].x, at[p].y, at[p].z}, p});
+    tree_ = bg::index::rtree<Entry, bg::index::linear<16>>(entries);
   }
   template <class Take>
   void visit(const Box& box, const Take& take) const {
-    visit(0, points_.size(), box, take);
+    const auto& [low, high] = box;
+    const bg::model::box<Corner> within({low.x, low.y, low.z}, {high.x, high.y, high.z});
+    for (auto found = tree_.qbegin(bg::index::intersects(within)); found != tree_.qend(); ++found) take(found->second);
   }
 
  private:
-  static constexpr std::size_t kLeaf = 8;
-
-  void build(std::size_t first, std::size_t last) {
-    if (last - first <= kLeaf) return;
-    Vec3 low = at_[points_[first]], high = low;
-    for (std::size_t i = first; i < last; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        const double c = kernel::coordinate(at_[points_[i]], k);
-        coordinate(low, k) = std::min(kernel::coordinate(low, k), c);
-        coordinate(high, k) = std::max(kernel::coordinate(high, k), c);
-      }
-    }
-    const Vec3 size = kernel::difference(high, low);
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const std::size_t middle = first + (last - first) / 2;
-    std::nth_element(points_.begin() + static_cast<std::ptrdiff_t>(first),
-                     points_.begin() + static_cast<std::ptrdiff_t>(middle),
-                     points_.begin() + static_cast<std::ptrdiff_t>(last),
-                     [&](Id a, Id b) { return kernel::coordinate(at_[a], axis) < kernel::coordinate(at_[b], axis); });
-    cuts_[middle] = {axis, kernel::coordinate(at_[points_[middle]], axis)};
-    build(first, middle);
-    build(middle, last);
-  }
-  template <class Take>
-  void visit(std::size_t first, std::size_t last, const Box& box, const Take& take) const {
-    if (last - first <= kLeaf) {
-      for (std::size_t i = first; i < last; ++i) {
-        const Vec3& p = at_[points_[i]];
-        if (meet(box, {p, p})) take(points_[i]);
-      }
-      return;
-    }
-    const std::size_t middle = first + (last - first) / 2;
-    const auto [axis, c] = cuts_[middle];
-    if (kernel::coordinate(box.low, axis) <= c) visit(first, middle, box, take);
-    if (kernel::coordinate(box.high, axis) >= c) visit(middle, last, box, take);
-  }
-
-  std::span<const Vec3> at_;
-  std::vector<Id> points_;
-  std::vector<std::pair<int, double>> cuts_;  // in the middle of each part
+  using Corner = bg::model::point<double, 3, bg::cs::cartesian>;
+  using Entry = std::pair<Corner, Id>;
+  bg::index::rtree<Entry, bg::index::linear<16>> tree_;
 };
 
 // --- Distances ---
@@ -531,20 +500,15 @@ std::vector<Id> corner_set(const Rings& rings) {
 // --- The scene ---
 
 void require_possible(const Scene& scene, double length) {
-  constexpr double kLeastShare = 0x1p-100;
   if (!(length > 0.0) || !std::isfinite(length)) {
     text::refuse("corners cannot be welded within " + text::shortest(length),
                  "it is a positive length in the scene's unit",
                  "give the largest distance of corners that should be one");
   }
-  if (length / extent(scene).largest < kLeastShare || length < 0x1p100 * std::numeric_limits<double>::denorm_min()) {
+  if (length / extent(scene).largest < 0x1p-100 || length < 0x1p100 * std::numeric_limits<double>::denorm_min()) {
     text::refuse("the length " + text::shortest(length) + " is too small for the scene's coordinates",
                  "doubles are too far apart there", "give a larger length");
   }
-}
-
-std::string place_words(const Vec3& v) {
-  return "(" + text::short_number(v.x) + ", " + text::short_number(v.y) + ", " + text::short_number(v.z) + ")";
 }
 
 void require_small_moves(Welding& welding, const Scene& scene, double length) {
@@ -552,8 +516,10 @@ void require_small_moves(Welding& welding, const Scene& scene, double length) {
   const auto before = welding.before();
   const Id corner = *std::ranges::max_element(
       before, {}, [&](Id c) { return std::pair(welding.move_of(c), key_of(scene.vertices()[c])); });
-  text::refuse("welded within " + text::shortest(length) + ", the corner at " + place_words(scene.vertices()[corner]) +
-                   " would move by " + text::short_number(welding.move_of(corner)),
+  const auto& [x, y, z] = scene.vertices()[corner];
+  text::refuse("welded within " + text::shortest(length) + ", the corner at (" + text::short_number(x) + ", " +
+                   text::short_number(y) + ", " + text::short_number(z) + ") would move by " +
+                   text::short_number(welding.move_of(corner)),
                "a chain of corners within this length is much longer than it",
                "give a smaller length; `exactff info` advises one");
 }
@@ -642,7 +608,7 @@ std::size_t counted_edges(const Scene& scene, bool is_rounding, Welding::OpenEdg
     std::size_t before = 0, after = 0;
     bool is_bent = false, closes_one = false;
   };
-  const std::uint32_t faces = static_cast<std::uint32_t>(scene.faces().size());
+  const auto faces = static_cast<std::uint32_t>(scene.faces().size());
   std::vector<Part> old(faces), now(faces);  // at their first face
   for (std::uint32_t f = 0; f < faces; ++f) {
     for (Part* part : {&old[before.parts.root(f)], &now[after.parts.root(f)]}) {
@@ -693,9 +659,7 @@ std::size_t open_edges_after(const Scene& scene, const Welding& exact, double le
 // At least the length, with two digits.
 double two_digits_above(double length) {
   const double unit = std::pow(10.0, std::floor(std::log10(length)) - 1.0);
-  const std::string text = text::short_number(std::ceil(length / unit) * unit, 2);
-  const double value = text::parse_number(text).value;
-  return value >= length ? value : length;
+  return std::max(length, text::parse_number(text::short_number(std::ceil(length / unit) * unit, 2)).value);
 }
 
 }  // namespace
@@ -727,8 +691,7 @@ std::optional<Gap> gap(const Scene& scene) {
     const double middle = std::sqrt(too_small) * std::sqrt(length);
     (open_edges_after(scene, exact, middle) <= fewest ? length : too_small) = middle;
   }
-  const double rounded = two_digits_above(length);
-  if (open_edges_after(scene, exact, rounded) <= fewest) length = rounded;
+  if (const double more = two_digits_above(length); open_edges_after(scene, exact, more) <= fewest) length = more;
   Welding welding(scene, length);
   welding.run();
   return Gap{length, open_edges, welding.open_edges().count};

@@ -148,7 +148,8 @@ TEST_F(RenderCommand, ALightmapAgreesWithTruthAtItsPoints) {
            {{"render", scene, "--lightmap", "48", "-o", path("c.png")}, "--lightmap: '48' is not a size"},
            {{"render", scene, "--uv", "1", "-o", path("c.png")}, "--uv requires --lightmap"},
            {{"render", scene, "--lightmap", "4x4", "--two-sided", "-o", path("c.png")}, "leave out --two-sided"},
-           {{"render", scene, "--lightmap", "4x4", "--spp", "2", "-o", path("c.png")}, "--spp cannot be given with --lightmap"},
+           {{"render", scene, "--lightmap", "4x4", "--spp", "2", "-o", path("c.png")},
+            "--spp cannot be given with --lightmap"},
            {{"render", scene, "--lightmap", "4x4", "--uv", "1", "-o", path("c.png")}, "no face has texture"},
            {{"render", scene, "--lightmap", "4x4", "--against", path("t.exr"), "-o", path("c.png")},
             "give --lightmap 47x47"}}) {
