@@ -101,3 +101,4 @@ for moved in 0 1e-12 1e-9 1e-5; do
   row "L-shaped zone of 10 faces, corners moved by $moved, 1e-3, estimated" moved.obj --accuracy 1e-3
   row 'the same with backs and the sky' moved.obj --accuracy 1e-3 --backs --to all,sky
 done
+for accuracy in 1e-4 1e-5; do row "the last one, $accuracy, estimated" moved.obj --accuracy "$accuracy"; done
