@@ -228,7 +228,7 @@ TEST(GltfReader, PatchesAreNodesByMaterial) {
   other["material"] = 1;
   file.json["meshes"][0]["primitives"] = {triangles, painted, other};
   EXPECT_EQ(patch_names(read(file)), (PatchNames{"wall", "wall/paint", "wall/material_1"}));
-  file.json["meshes"][0]["primitives"] = {painted};
+  file.json["meshes"][0]["primitives"] = Json::array({painted});
   EXPECT_EQ(patch_names(read(file)), PatchNames{"wall"});
   EXPECT_EQ(patch_names(read_scene(file.binary(), "s.glb", {.patches = PatchMode::kPlanes})), PatchNames{"wall/1"});
   file.json["meshes"][0]["name"] = "plate";
