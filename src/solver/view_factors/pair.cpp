@@ -566,12 +566,7 @@ std::vector<Share> Pair::improve(Share share, const Budget& budget) {
     return result;
   }
   Halves parts = cut(share.cell, sight_.receiver, by, units);
-  if (too_much_is_left_out) {
-    view_.start();
-    Candidates candidates = omissions_.united(share.candidates, share.left_out);
-    look(std::move(parts.negative), 0, candidates, enough, enough, result);
-    look(std::move(parts.positive), 0, std::move(candidates), enough, enough, result);
-  } else if (share.formula != nullptr) {
+  if (share.formula != nullptr && !too_much_is_left_out) {
     cells_made_ += 2;
     share.cell = {};
     for (Cell* part : {&parts.negative, &parts.positive}) {
@@ -582,7 +577,11 @@ std::vector<Share> Pair::improve(Share share, const Budget& budget) {
     }
   } else {
     const std::size_t depth = share.way.size();
-    view_.resume(std::move(share.way));
+    if (depth == 0) {
+      view_.start();
+    } else {
+      view_.resume(std::move(share.way));
+    }
     Candidates candidates = omissions_.united(share.candidates, share.left_out);
     look(std::move(parts.negative), depth, candidates, enough, enough, result);
     look(std::move(parts.positive), depth, std::move(candidates), enough, enough, result);
