@@ -19,6 +19,7 @@
 #include "kernel/numbers.h"
 #include "kernel/vec.h"
 #include "scene/scene.h"
+#include "scene/scene_copy.h"
 #include "scene/shaft_tree.h"
 #include "scene/solids.h"
 #include "text/names.h"
@@ -564,10 +565,8 @@ class Division {
   // With everything but patches and faces.
   SceneBuilder start() const {
     const SceneInside::Data& data = SceneInside::data(scene_);
-    SceneBuilder builder(data.file, {.unit = data.unit});
-    for (const std::filesystem::path& file : data.files) builder.read_from(file);
+    SceneBuilder builder = begun_as(scene_);
     for (const Vec3& v : points_.all()) builder.add_vertex(v);
-    for (const Material& material : scene_.materials()) builder.add_material(material);
     for (std::size_t w = data.warnings_of_glass; w < data.warnings.size(); ++w) builder.warn(data.warnings[w]);
     return builder;
   }

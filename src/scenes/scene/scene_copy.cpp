@@ -67,9 +67,15 @@ Rings rings_of(const Face& face) { return face.piece_count > 0 ? face.rings : Ri
 
 }  // namespace
 
+SceneBuilder begun_as(const Scene& scene) {
+  SceneBuilder builder(SceneInside::data(scene).file, {.unit = scene.unit()});
+  for (const std::filesystem::path& file : scene.files()) builder.read_from(file);
+  for (const Material& material : scene.materials()) builder.add_material(material);
+  return builder;
+}
+
 SceneCopy::SceneCopy(const Scene& scene, const Vec3& origin)
-    : scene_(scene), builder_({}, {.bad_faces = BadFaces::kSkip}) {
-  builder_.set_unit(scene.unit());
+    : scene_(scene), builder_({}, {.bad_faces = BadFaces::kSkip, .unit = scene.unit()}) {
   for (const Vec3& v : scene.vertices()) builder_.add_vertex({v.x - origin.x, v.y - origin.y, v.z - origin.z});
   for (const Material& material : scene.materials()) builder_.add_material(material);
   for (const Patch& patch : scene.patches()) (void)builder_.patch(patch.name);

@@ -10,6 +10,9 @@
 
 namespace exactff {
 
+// With the name, the files, the unit and the materials of the scene, and nothing else.
+[[nodiscard]] SceneBuilder begun_as(const Scene& scene);
+
 // The ids of all patches, faces and vertices of the given scene stay the same. Refers to that scene.
 class SceneCopy {
  public:

@@ -41,6 +41,7 @@
 #include "kernel/vec.h"
 #include "scene/groups.h"
 #include "scene/scene.h"
+#include "scene/scene_copy.h"
 #include "scene/shaft_tree.h"
 #include "scene/solids.h"
 #include "text/number_text.h"
@@ -525,10 +526,7 @@ void require_small_moves(Welding& welding, const Scene& scene, double length) {
 }
 
 WeldedScene built(const Scene& scene, Welding& welding, double length) {
-  const SceneInside::Data& data = SceneInside::data(scene);
-  SceneBuilder builder(data.file, {.unit = data.unit});
-  for (const std::filesystem::path& file : data.files) builder.read_from(file);
-  for (const Material& material : scene.materials()) builder.add_material(material);
+  SceneBuilder builder = begun_as(scene);
   for (const Patch& patch : scene.patches()) (void)builder.patch(patch.name);
   std::vector<std::uint32_t> vertex(scene.vertices().size(), 0);
   for (const Id corner : welding.live()) vertex[corner] = builder.add_vertex(welding.at(corner));
