@@ -323,7 +323,8 @@ void check_content(const MatrixArguments& args, const Scene& scene, const std::v
   for (const auto& [format, file] : args.program_files()) {
     if (format->of_conductors) radiosity::require_exchangeable(scene, format);
   }
-  add_sums(scene, args.sums, args.options.factors.accuracy, empty);
+  matrix::Matrix without_rows{{{}, to, {}}, {}, {}, {}};
+  add_sums(scene, args.sums, args.options.factors.accuracy, without_rows);
   if (!args.balance) return;
   empty.back.resize(from.size());
   empty.open.resize(from.size());

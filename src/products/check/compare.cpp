@@ -33,7 +33,9 @@ namespace {
 class FactFinder {
  public:
   FactFinder(const Truth& truth, const std::vector<Measured>& values)
-      : truth_(truth), sums_(matrix::sums_among(truth.further)), order_(order_of(truth)), width_(truth.sources.size()) {
+      : truth_(truth), order_(order_of(truth)), width_(truth.sources.size()) {
+    const std::vector<std::string> sums = matrix::sums_among(truth.further);
+    for (const std::string& one : truth.sources) is_sum_.push_back(std::ranges::find(sums, one) != sums.end());
     NameList rows;
     for (const std::string& name : order_.rows) (void)rows.number_of(name);
     entries_.resize(order_.rows.size() * width_);
@@ -68,7 +70,7 @@ class FactFinder {
     double sum = 0.0, lower = 0.0, upper = 0.0;
     for (std::size_t j = 0; j < width_; ++j) {
       const auto& [in_truth, value, least, most] = entries_[i * width_ + j];
-      if (!in_truth || std::ranges::find(sums_, truth_.sources[j]) != sums_.end()) continue;
+      if (!in_truth || is_sum_[j]) continue;
       const auto entry = [&, f = value] { return MatrixFacts::Largest{f, order_.rows[i], truth_.sources[j]}; };
       if (value < 0.0 && (facts_.negative++ == 0 || value < facts_.least.by)) facts_.least = entry();
       if (value > 1.0 && (facts_.above_one++ == 0 || value > facts_.largest.by)) facts_.largest = entry();
@@ -93,9 +95,9 @@ class FactFinder {
   }
 
   const Truth& truth_;
-  const std::vector<std::string> sums_;
   const matrix::Order order_;
   const std::size_t width_;
+  std::vector<bool> is_sum_;  // of each source
   std::vector<Entry> entries_;
   MatrixFacts facts_;
 };
