@@ -302,7 +302,8 @@ struct FaceName {
 [[nodiscard]] FaceName face_name(std::string_view text);  // "NAME=SELECTOR"; throws InputError for another text
 // The same scene in which these faces are patches of these names, new or existing. All selectors are about the given
 // scene; of two that find a face, the later one counts. Faces are numbered anew; patches that are left without faces
-// vanish. A warning tells of merged patches. Throws InputError for a selector that cannot be read or finds nothing.
+// vanish. A warning names patches that are merged. Throws InputError for a selector that cannot be read or finds
+// nothing.
 [[nodiscard]] Scene with_names(const Scene& scene, std::span<const FaceName> names);
 // The same scene with other patches (PatchMode), each group of which is a patch of the given scene.
 [[nodiscard]] Scene with_patches(const Scene& scene, const SceneOptions& patches);

@@ -164,7 +164,7 @@ Atlas::Atlas(const Scene& scene, const Lightmap& lightmap) : scene_(&scene), lig
   }
   std::vector<bool> inside(texels), overlaps(texels);
   for (std::uint32_t first = 0, next = 0; first < triangles_.size(); first = next) {
-    const std::array before{charts_.texels};
+    const std::uint64_t before = charts_.texels;
     bool flat = true, outside = false;
     for (; next < triangles_.size() && triangles_[next].face == triangles_[first].face; ++next) {
       flat = !fill(next, inside, overlaps) && flat;
@@ -173,7 +173,7 @@ Atlas::Atlas(const Scene& scene, const Lightmap& lightmap) : scene_(&scene), lig
     }
     if (flat) ++charts_.flat;
     if (outside) ++charts_.outside;
-    if (!flat && !outside && charts_.texels == before[0]) ++charts_.missed;
+    if (!flat && !outside && charts_.texels == before) ++charts_.missed;
   }
 }
 

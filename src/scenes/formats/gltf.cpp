@@ -284,7 +284,7 @@ MaterialId GltfReader::add_material(std::size_t m) {
   return id;
 }
 
-// Of the default scene; without scenes, all nodes that are nobody's children.
+// The nodes that the default scene names; in a file without scenes, all nodes without a parent.
 std::vector<int> GltfReader::roots() {
   const std::size_t scenes = model_.scenes.size();
   const int index = std::max(model_.defaultScene, 0);

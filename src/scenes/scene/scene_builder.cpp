@@ -343,7 +343,7 @@ void SceneBuilder::State::warn_out_of_plane() {
                               ? " is out of plane by "
                               : " and " + std::to_string(bent_count - 1) + " more are out of plane by up to ";
   warnings.add({data->file, first.line, quoted(first) + are + two_digits(most_bent) + " of the diameter",
-                "what is not planar is cut into triangles; other cuts would give other surfaces",
+                "a face that is not planar is cut into triangles, and another cut would give another surface",
                 "use triangles if this matters; `exactff convert --triangulate` writes those of this cut, and where "
                 "`exactff info` finds a gap, --weld makes walls along the axes planar"});
 }
