@@ -354,6 +354,7 @@ Command add_info(CLI::App& app) {
       "Example:\n"
       "  exactff info room.obj\n"
       "  exactff info room.obj --patches faces --json\n"
+      "  exactff info housing.stl+lamp.glb --unit mm --patches planes\n"
       "  exactff info @                       # lists the generated scenes with their settings\n"
       "  exactff info @teapot:segments=4");
   arguments->scene.add_to(*info);

@@ -13,6 +13,7 @@
 #include "matrix/columns.h"
 #include "table/csv.h"
 #include "text/names.h"
+#include "text/refuse.h"
 
 namespace exactff::check {
 namespace {
@@ -368,12 +369,31 @@ void fill_in_rho_b(Truth& truth) {
 
 Truth read_truth(const std::filesystem::path& path, const std::string& column) {
   const kernel::StandardArithmetic arithmetic;
+  if (path.filename() == "questions.csv" && std::filesystem::is_directory(path.parent_path() / "answers")) {
+    text::refuse(path, "holds the questions of a suite", "its answers are what values are checked against",
+                 "give its folder, " + text::printable(path.parent_path().string()));
+  }
   Truth truth = TruthReader(path, column).read();
   fill_in_rho_b(truth);
   return truth;
 }
 
 // --- Suites ---
+
+namespace {
+
+// " (version 1.0)", by which a suite is cited; nothing if it does not say.
+std::string version_of(const std::filesystem::path& suite) {
+  std::ifstream citation(suite / "CITATION.cff");
+  for (std::string line; std::getline(citation, line);) {
+    if (line.starts_with("version: \"") && line.ends_with('"')) {
+      return " (version " + line.substr(10, line.size() - 11) + ")";
+    }
+  }
+  return {};
+}
+
+}  // namespace
 
 bool is_suite(const std::filesystem::path& path) { return std::filesystem::is_regular_file(path / "questions.csv"); }
 
@@ -389,7 +409,7 @@ Truth read_suite(const std::filesystem::path& folder) {
     columns[i] = questions.needed_column({kNames.at(i)}, "it is a part of every question", "restore the file");
   }
   Truth suite;
-  suite.file = folder.string();
+  suite.file = folder.string() + version_of(folder);
   suite.kind = kSuite;
   suite.column = "value";
   suite.keys = {"question", "level"};

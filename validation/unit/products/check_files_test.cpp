@@ -355,8 +355,10 @@ TEST_F(CheckOfTables, ASuiteIsGradedOnEachLevel) {
   EXPECT_EQ(json["programs"][1]["levels"][1]["answered"], 0);
   EXPECT_HOLDS(validation::text_of(folder / "index.html"), ">FAILED</td><td data-label=\"answered\">0 of 66</td>");
   EXPECT_HOLDS(validation::text_of(folder / "index.html"), "Level: crowded");
+  EXPECT_HOLDS(validation::text_of(folder / "index.html"), "suite (version 1.0)</code>");
   const auto unknown = directory_.write("unknown.csv", "question,value\nplates-0,1\n");
   EXPECT_HOLDS(complaint([&] { (void)compare(suite, unknown); }), "the truth has no question 'plates-0'");
+  EXPECT_HOLDS(complaint([&] { (void)compare(suite / "questions.csv", unknown); }), "give its folder");
 }
 
 // A table of a study names receivers; it is no matrix, whose candidates may be nothing but numbers.
