@@ -140,7 +140,7 @@ class QuickGradient {
 
   // What a piece adds to the derivatives by the points a and b of its line is cross times these, over 2 pi |n| and
   // times 2^exponent. They are the sums of contour.h for the shares g_a = b x C / |C|^2 and g_b = C x a / |C|^2 of the
-  // points (gradient/vertex_sight.h), which add up to g:
+  // points (gradient/vertex_motions.h), which add up to g:
   //   a: theta (n x b) . C / |C|^3 + (psi(q) - psi(p)) / |C|^2 with psi(w) = (w . n) (w . b) / w . w,
   //   b: the same with a for b, negated.
   struct Shares {

@@ -144,10 +144,10 @@ void VertexGradient::find_kinks(const PlaneQuery& query, const VertexMotions& mo
   const ExactVec3 horizon = query.view.normal().exact;
   const auto visit = [&](std::span<const EdgeId> group) {
     if (!differ(motions, group)) return true;
-    VertexSight sight(query, profile_, motions, outlines.edge(group.front()));
+    SightPlane sight(query, profile_, outlines.edge(group.front()), &motions);
     if (is_zero(cross(sight.normal(), horizon))) return true;
-    sight.judge(VertexSight::Extent::kKinks);
-    kinks_.insert(sight.kinks().begin(), sight.kinks().end());
+    const std::vector<std::uint32_t> kinks = sight.kinks_of_vertices();
+    kinks_.insert(kinks.begin(), kinks.end());
     return true;
   };
   groups_.for_each(outlines, visit, 1);
@@ -275,17 +275,16 @@ void VertexGradient::add_by_edges(const VertexMotions& motions, const ArcSection
               end = piece.a * piece.end.l + piece.b * piece.end.m;
     const ExactVec3 pole = cross(begin, end);
     if (is_zero(pole)) continue;
-    const std::vector<VertexMotion> motion =
+    const std::vector<Motion> motion =
         line ? motions.of_line(pole, *line) : motions.of_cut(pole, piece_of_cut(motions, seen, of));
-    for (const VertexMotion& one : motion) arcs_[one.place].push_back({one.place, {begin, end, one.share}, one.turn});
+    for (const Motion& one : motion) arcs_[one.place].push_back({one.place, {begin, end, one.share}, one.turn});
   }
 }
 
 void VertexGradient::add_by_planes(const PlaneQuery& query, const VertexMotions& motions, const ArcSection& seen) {
   for_each_plane(seen, query.view.normal().exact, [&](const ExactVec3& pole) {
-    VertexSight sight(query, profile_, motions, profile_.edge_in_plane(pole));
-    sight.judge(VertexSight::Extent::kAll);
-    for (VertexArc& arc : sight.arcs()) arcs_[arc.place].push_back(std::move(arc));
+    SightPlane sight(query, profile_, profile_.edge_in_plane(pole), &motions);
+    for (VertexArc& arc : sight.of_vertices().arcs) arcs_[arc.place].push_back(std::move(arc));
   });
 }
 

@@ -6,7 +6,7 @@
 // than
 //    the source: its vertices may move a little, too.
 // 2. Look for vertices by which there is no derivative: in each plane through x with different lines, or with an edge
-//    that lies in the source's plane (vertex_sight.h).
+//    that lies in the source's plane (sight_plane.h).
 // 3. Add up the arcs of the visible boundary, for each vertex that moves them: those of the edge engine in
 //    double-double (contour/quick_contour.h), unless a plane cuts their lines, and where that does not suffice in
 //    balls. Of the Booleans' boundary only the planes through x are used: the lines in each are those that step 2
@@ -22,7 +22,7 @@
 #include "exactff/exact.h"
 #include "gradient/gradient.h"
 #include "gradient/sight_lines.h"
-#include "gradient/vertex_sight.h"
+#include "gradient/sight_plane.h"
 #include "visibility/visible_edges.h"
 
 namespace exactff::gradient {
