@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Holds other programs to our values.
 
-Usage: field.py PROGRAM TASK [FOLDER]    PROGRAM: build/exactff; FOLDER: build/field/TASK
+Usage: field.py PROGRAM TASK    PROGRAM: build/exactff; results are written to build/field/TASK
 
-  openfoam, calculix  view factors of viewFactorsGen, or of *VIEWFACTOR, against certified ones: FOLDER/TASK.csv
+  openfoam, calculix  view factors of viewFactorsGen, or of *VIEWFACTOR, against certified ones: TASK.csv
   suite [NAME...]     asks methods for points, POV-Ray, OpenFOAM and CalculiX, or those named, the questions of
-                      data/suite: FOLDER/NAME.csv with the columns question and value, and times.json
-  board               grades the answers in data/field/suite: their table there, and FOLDER with the page
+                      data/suite: NAME.csv with the columns question and value, and times.json
+  board               grades the answers in data/field/suite: their table there, and the page
+  cycles [--quick]    images of Blender's path tracer against exact ones, by cycles.py: cycles.csv and maps of errors
 
-Installs Debian's packages of the programs. cycles.py measures a renderer.
+Installs Debian's packages of the programs.
 """
 
 import csv
@@ -28,7 +29,7 @@ import numpy
 TOP = pathlib.Path(__file__).resolve().parents[2]
 SUITE = TOP / "data" / "suite"
 PACKAGES = {"openfoam": ["openfoam"], "calculix": ["calculix-ccx"], "suite": ["openfoam", "calculix-ccx", "povray"],
-            "board": []}
+            "board": [], "cycles": ["blender", "python3-openimageio"]}
 
 
 # --- scenes in cells, factors of patches, and the judgement of `exactff check` ---
@@ -588,14 +589,15 @@ def ask(program, folder, names):
 
 def main(program, task, *more):
     program = pathlib.Path(program).resolve()
-    names = more if task == "suite" else ()
-    folder = pathlib.Path(more[0] if more and not names else TOP / "build" / "field" / task)
+    folder = TOP / "build" / "field" / task
     run([TOP / "validation" / "setup.sh", "python3-numpy", *PACKAGES[task]])
     os.chdir(TOP)
     if task == "board":
         return board(program, folder)
     folder.mkdir(parents=True, exist_ok=True)
-    return ask(program, folder, names) if task == "suite" else measure(program, task, folder)
+    if task == "cycles":  # Debian's packages belong to Debian's Python, whatever else is installed
+        os.execv("/usr/bin/python3", ["python3", "-B", "validation/field/cycles.py", str(program), str(folder), *more])
+    return ask(program, folder, more) if task == "suite" else measure(program, task, folder)
 
 
 if __name__ == "__main__":
