@@ -19,7 +19,7 @@ packages=(
   libeigen3-dev                                                 # linear systems
   libcli11-dev nlohmann-json3-dev libfmt-dev gnuplot-nox        # program and report
   pybind11-dev python3-dev python3-numpy                        # the package for Python
-  libgtest-dev patch pkgconf                                    # tests
+  libgtest-dev pkgconf                                          # tests
 )
 if_offered=(
   libflint-arb-dev  # Arb, which FLINT 3 contains
@@ -56,7 +56,7 @@ exactff is built from these, in these versions or newer ones:
   jemalloc           5.3; not needed with -DEXACTFF_JEMALLOC=OFF
   gnuplot            5.4, a program that draws the figures of reports
   Python, NumPy      3.9, 1.24, with pybind11 2.10; not needed with -DEXACTFF_PYTHON=OFF
-  GoogleTest         1.12, with the programs patch and pkgconf; not needed with -DEXACTFF_TESTS=OFF
+  GoogleTest         1.12, with the program pkgconf; not needed with -DEXACTFF_TESTS=OFF
 
 CMake also looks for libraries in the folders of CMAKE_PREFIX_PATH.
 END

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "bench/scenes.h"
-#include "bench/subjects.h"
 #include "exactff/exact.h"
 #include "exactff/receiver.h"
 #include "exactff/scene_files.h"
@@ -29,33 +28,33 @@ const Cornell& cornell() {
   return the_box;
 }
 
-void solve(const Receiver& receiver, Engine engine, FormFactor& result) {
-  exact_form_factor(cornell().scene, receiver, cornell().light, {.engine = engine}, result);
+void solve(const Receiver& receiver, FormFactor& result) {
+  exact_form_factor(cornell().scene, receiver, cornell().light, {}, result);
 }
 
 std::vector<Receiver> receivers_with(const std::function<bool(Outcome)>& chosen) {
   std::vector<Receiver> receivers;
   FormFactor result;
   for (const Receiver& receiver : cornell().receivers) {
-    solve(receiver, Engine::kEdges, result);
+    solve(receiver, result);
     if (chosen(result.planes.front().outcome)) receivers.push_back(receiver);
   }
   return receivers;
 }
 
-double seconds_of(const Receiver& receiver, Engine engine, FormFactor& result) {
+double seconds_of(const Receiver& receiver, FormFactor& result) {
   const auto begin = std::chrono::steady_clock::now();
-  solve(receiver, engine, result);
+  solve(receiver, result);
   keep(result.value);
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 // One iteration computes every receiver once; the result is the median time over them.
-void median_receiver(benchmark::State& state, const std::vector<Receiver>& receivers, Engine engine) {
+void median_receiver(benchmark::State& state, const std::vector<Receiver>& receivers) {
   std::vector<double> seconds(receivers.size());
   FormFactor result;
   for (auto _ : state) {
-    for (std::size_t i = 0; i < receivers.size(); ++i) seconds[i] = seconds_of(receivers[i], engine, result);
+    for (std::size_t i = 0; i < receivers.size(); ++i) seconds[i] = seconds_of(receivers[i], result);
     const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
     std::nth_element(seconds.begin(), middle, seconds.end());
     state.SetIterationTime(*middle);
@@ -63,41 +62,19 @@ void median_receiver(benchmark::State& state, const std::vector<Receiver>& recei
   state.counters["receivers"] = static_cast<double>(receivers.size());
 }
 
-// Receivers one after the other, distributed to the threads.
-void throughput(benchmark::State& state) {
-  const std::vector<Receiver>& receivers = cornell().receivers;
-  auto i = static_cast<std::size_t>(state.thread_index());
-  FormFactor result;
-  for (auto _ : state) {
-    solve(receivers[i], Engine::kEdges, result);
-    keep(result.value);
-    i = (i + static_cast<std::size_t>(state.threads())) % receivers.size();
-  }
-  state.SetItemsProcessed(state.iterations());
-}
-
 }  // namespace
 
 void add_cornell() {
   using Kind = std::pair<std::string, std::function<bool(Outcome)>>;
   for (const auto& [kind, chosen] : {Kind("unoccluded", [](Outcome o) { return o == Outcome::kUnoccluded; }),
-                                     Kind("partly", [](Outcome o) { return o == Outcome::kPartlyHidden; }),
-                                     Kind("every", [](Outcome) { return true; })}) {
-    for (const auto& [name, engine] : {std::pair{"edges", Engine::kEdges}, std::pair{"boolean", Engine::kBoolean}}) {
-      benchmark::RegisterBenchmark(("cornell/" + kind + '/' + name).c_str(),
-                                   [chosen = chosen, engine = engine](benchmark::State& state) {
-                                     median_receiver(state, receivers_with(chosen), engine);
-                                   })
-          ->Unit(benchmark::kMicrosecond)
-          ->UseManualTime()
-          ->Iterations(5);  // each thread computes every receiver
-    }
+                                     Kind("partly", [](Outcome o) { return o == Outcome::kPartlyHidden; })}) {
+    benchmark::RegisterBenchmark(
+        ("cornell/" + kind).c_str(),
+        [chosen = chosen](benchmark::State& state) { median_receiver(state, receivers_with(chosen)); })
+        ->Unit(benchmark::kMicrosecond)
+        ->UseManualTime()
+        ->Iterations(5);  // each computes every receiver
   }
-  benchmark::RegisterBenchmark("cornell/throughput", throughput)
-      ->Unit(benchmark::kMicrosecond)
-      ->UseRealTime()
-      ->Threads(1)
-      ->Threads(2);
 }
 
 }  // namespace exactff::bench

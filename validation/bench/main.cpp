@@ -4,17 +4,15 @@
 #include <cstdio>
 #include <exception>
 
-#include "bench/subjects.h"
+#include "bench/scenes.h"
 
 int main(int argc, char** argv) try {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   exactff::bench::add_engines();
   exactff::bench::add_rays();
-  exactff::bench::add_memory();
   exactff::bench::add_cornell();
   exactff::bench::add_view();
-  exactff::bench::add_covers();
   return benchmark::RunSpecifiedBenchmarks() > 0 ? 0 : 2;  // 0: the filter matches nothing
 } catch (const std::exception& error) {
   std::fprintf(stderr, "exactff_bench: %s\n", error.what());

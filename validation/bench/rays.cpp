@@ -1,22 +1,20 @@
 // The competing method under its best conditions: 10^4 shadow rays to jittered points of the source, in prepared
-// packets of 16, against exactly the occluders that the exact method has. Building the ray structure is timed
-// separately, and reads the occluders in place. The rays of a packet end in a square of 4 x 4 neighbouring cells of the
-// source. Embree is told that they are coherent, or not, because sometimes the one is faster and sometimes the other.
-// In addition, the same rays as cast by a program that draws its points at random.
+// packets of 16, against exactly the occluders that the exact method has. The rays of a packet end in a square of 4 x 4
+// neighbouring cells of the source. Embree is told that they are coherent, or not, because sometimes the one is faster
+// and sometimes the other.
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
-#include <random>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "adaptive/embree.h"
 #include "adaptive/sub_patch.h"
 #include "bench/scenes.h"
-#include "bench/subjects.h"
 #include "generate/random.h"
 
 namespace exactff::bench {
@@ -103,28 +101,25 @@ void set_ray(RTCRay16& rays, int lane, const Vec3& x, const Vec3& end) {
   rays.flags[lane] = 0;
 }
 
-// The order of the rays: cell by cell within a tile, tile by tile; or random.
-enum class Order { kTiles, kRandom };
-
-std::vector<int> cells_in_order(Order order) {
+// Cell by cell within a tile, tile by tile.
+std::vector<int> cells_in_order() {
   std::vector<int> cells;
   for (int tile = 0; tile < kCells * kCells / kPacket; ++tile) {
     const int row = tile / (kCells / kTile) * kTile, column = tile % (kCells / kTile) * kTile;
     for (int k = 0; k < kPacket; ++k) cells.push_back((row + k / kTile) * kCells + column + k % kTile);
   }
-  if (order == Order::kRandom) std::shuffle(cells.begin(), cells.end(), std::mt19937_64(1));
   return cells;
 }
 
 // Requires a source that is one parallelogram.
-std::vector<RTCRay16> make_rays(const BenchScene& s, Order order) {
+std::vector<RTCRay16> make_rays(const BenchScene& s) {
   const Piece& source = s.scene.pieces_of(s.scene.faces_of(s.source.selection()).front()).front();
   const auto corners = s.scene.corners(source);
   const Vec3 origin = s.scene.vertices()[corners[0]];
   const Vec3 along_u = s.scene.vertices()[corners[1]] - origin, along_v = s.scene.vertices()[corners[3]] - origin;
   generate::Random random(1);
   const auto jittered = [&](int cell) { return (cell + random.unit()) / kCells; };
-  const std::vector<int> cells = cells_in_order(order);
+  const std::vector<int> cells = cells_in_order();
   std::vector<RTCRay16> packets(cells.size() / kPacket);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const double u = jittered(cells[i] % kCells), v = jittered(cells[i] / kCells);
@@ -150,10 +145,10 @@ int cast_rays(RTCScene structure, const std::vector<RTCRay16>& packets, embree::
   return arrived;
 }
 
-void cast(benchmark::State& state, const BenchScene& s, Order order, embree::Order told) {
+void cast(benchmark::State& state, const BenchScene& s, embree::Order told) {
   const Occluders occluders = occluders_of(s);
   const RayStructure structure = build_structure(occluders);
-  const std::vector<RTCRay16> packets = make_rays(s, order);
+  const std::vector<RTCRay16> packets = make_rays(s);
   double visible = 0.0;
   for (auto _ : state) visible = static_cast<double>(cast_rays(structure.get(), packets, told)) / (kCells * kCells);
   state.counters["visible"] = visible;
@@ -163,21 +158,14 @@ void cast(benchmark::State& state, const BenchScene& s, Order order, embree::Ord
     state.SkipWithError("the rays do not see what the exact method sees");
 }
 
-void build(benchmark::State& state, const BenchScene& s) {
-  const Occluders occluders = occluders_of(s);
-  for (auto _ : state) keep(build_structure(occluders));
-}
-
 }  // namespace
 
 void add_rays() {
-  const auto in = [](Order order, embree::Order told) {
-    return [order, told](benchmark::State& state, const BenchScene& s) { cast(state, s, order, told); };
-  };
-  add_for_every_scene("rays/coherent", in(Order::kTiles, embree::Order::kCoherent));
-  add_for_every_scene("rays/incoherent", in(Order::kTiles, embree::Order::kIncoherent));
-  add_for_every_scene("rays/scattered", in(Order::kRandom, embree::Order::kIncoherent));
-  add_for_every_scene("rays/build", build);
+  for (const auto& [name, told] :
+       {std::pair{"coherent", embree::Order::kCoherent}, std::pair{"incoherent", embree::Order::kIncoherent}}) {
+    add_for_every_scene(std::string("rays/") + name,
+                        [told = told](benchmark::State& state, const BenchScene& s) { cast(state, s, told); });
+  }
 }
 
 }  // namespace exactff::bench

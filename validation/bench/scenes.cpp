@@ -92,11 +92,6 @@ BenchScene::BenchScene(const PlainScene& plain)
   (void)edges_per_silhouette(scene);  // and the edges, where they will be used
 }
 
-double BenchScene::value() const {
-  if (!value_) value_ = exact_form_factor(scene, receiver, source).value;
-  return *value_;
-}
-
 double BenchScene::visible_fraction() const {
   if (!visible_fraction_) {
     visible_fraction_ = exact_form_factor(scene, receiver, source, {.visible_fraction = true}).visible_fraction;

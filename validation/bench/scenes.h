@@ -16,8 +16,7 @@ namespace exactff::bench {
 struct BenchScene {
   explicit BenchScene(const generate::PlainScene& plain);
 
-  // The expected result of a measurement, computed on first use.
-  [[nodiscard]] double value() const;
+  // The expected result of rays, computed on first use.
   [[nodiscard]] double visible_fraction() const;
 
   Scene scene;
@@ -25,7 +24,7 @@ struct BenchScene {
   Receiver receiver;
 
  private:
-  mutable std::optional<double> value_, visible_fraction_;
+  mutable std::optional<double> visible_fraction_;
 };
 
 // Computes the value even if it is not used. (DoNotOptimize of an object that may change spoils doubles with GCC 12.)
@@ -43,5 +42,11 @@ void add_for_every_scene(const std::string& subject, const Body& body);
 // The same, but the body makes the scene.
 using MakerBody = std::function<void(benchmark::State&, const std::function<generate::PlainScene()>& make)>;
 void add_maker_for_every_scene(const std::string& subject, const MakerBody& body);
+
+// What is measured. Each registers its benchmarks; names are SUBJECT/SCENE/N.
+void add_engines();  // certified/ENGINE, visible/ENGINE; memory, meaningful only in a process of its own
+void add_rays();     // rays/coherent, rays/incoherent
+void add_cornell();  // cornell/CLASS
+void add_view();     // view/loop, view/sweep
 
 }  // namespace exactff::bench

@@ -200,7 +200,7 @@ def main():
             version = run(["blender", "--version"])[0].splitlines()[0]
             colour = f"{100 * FULL_COLOUR:g} %"
             file.write("# title: Cycles, the path tracer of Blender, in the Cornell box\n")
-            file.write(f"# command: {' '.join(['validation/field/measure.sh cycles', *sys.argv[3:]])}\n")
+            file.write(f"# command: {' '.join(['validation/field/cycles.py', *sys.argv[1:]])}\n")
             file.write(f"# maps: Full colour is {colour} of the brightest pixel. Grey is not compared.\n")
             file.write("# Cycles' time is the render alone; exact includes the start, the scene and the file.\n")
             file.write(f"# {SCENE}, {json.dumps(CAMERA)}, {size} x {size} pixels, {version}, {THREADS} threads\n")

@@ -14,6 +14,7 @@
 #include "kernel/expect.h"
 #include "models/random.h"
 #include "studies/honest_families.h"
+#include "text/escape.h"
 #include "text/phrases.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/prepared_patch.h"
@@ -248,6 +249,28 @@ HonestyStudy honesty_study(const HonestySize& size, int threads, const Hooks& ho
     study.failures += scene.failure.empty() ? 0U : 1U;
   }
   return study;
+}
+
+std::string honesty_csv(const HonestyStudy& study) {
+  constexpr std::array<std::string_view, 3> kVerdicts{"holds", "open", "broken"};
+  std::string csv =
+      "# each model as for exactff matrix @MODEL --from FROM --to TO; others are families and seeds of "
+      "studies/honest_families.h\n"
+      "# truth_lower and truth_upper: what certified enclosures of both directions have in common\n"
+      "model,from,to,accuracy,budget,claim,way,factor,lower,upper,truth_lower,truth_upper,verdict\n";
+  for (const HonestyScene& scene : study.scenes) {
+    for (const HonestyEntry& entry : scene.entries) {
+      const ViewFactor& f = entry.factor;
+      csv += text::csv_field(scene.model) + ',' + (entry.turned ? scene.to : scene.from) + ',' +
+             (entry.turned ? scene.from : scene.to) + ',' + text::shortest(entry.accuracy) + ',' +
+             std::to_string(entry.budget) + ',' + std::string(to_string(f.claim)) + ',' + std::string(to_string(f.way));
+      for (const double value : {f.value, f.lower, f.upper, entry.truth.lower, entry.truth.upper}) {
+        csv += ',' + text::shortest(value);
+      }
+      csv += ',' + std::string(kVerdicts[static_cast<std::size_t>(verdict(f, entry.truth))]) + '\n';
+    }
+  }
+  return csv;
 }
 
 }  // namespace exactff::experiments

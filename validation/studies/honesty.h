@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "exactff/jobs.h"
 #include "exactff/view_factors.h"
-#include "experiments/experiments.h"
 
 namespace exactff::experiments {
 
@@ -101,8 +101,7 @@ struct HonestyStudy {
 [[nodiscard]] HonestyStudy honesty_study(const HonestySize& size, int threads, const Hooks& hooks);
 [[nodiscard]] std::vector<HonestyRow> honesty_rows(std::span<const HonestyScene> scenes);
 
-// The rows for readers.
-[[nodiscard]] NumberTable honesty_table(std::span<const HonestyRow> rows);
-[[nodiscard]] Result honesty_chapter(const HonestyStudy& study);
+// All entries, one a line, with their true values.
+[[nodiscard]] std::string honesty_csv(const HonestyStudy& study);
 
 }  // namespace exactff::experiments

@@ -1,15 +1,14 @@
-// Tests whether view factors keep their word, writes a report, and prints in Markdown what it found. Exit code 1 if one
-// is not honest: an error is proved to exceed the reported one, two enclosures are disjoint, or a cell fails its own
-// check.
+// Tests whether view factors keep their word, and prints in Markdown what it found. Exit code 1 if one is not honest:
+// an error is proved to exceed the reported one, two enclosures are disjoint, or a cell fails its own check.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 
 #include "files/parallel.h"
-#include "page/output_folder.h"
-#include "report/report.h"
 #include "studies/honesty.h"
-#include "text/escape.h"
+#include "text/phrases.h"
 
 namespace exactff::experiments {
 namespace {
@@ -17,7 +16,7 @@ namespace {
 struct Arguments {
   HonestySize size;
   int threads = files::usable_threads();
-  std::string folder;
+  std::filesystem::path folder;
 };
 
 void declare(CLI::App& app, Arguments& args) {
@@ -27,21 +26,23 @@ void declare(CLI::App& app, Arguments& args) {
       "Only rooms, dishes and streets whose corners or walls are off by 1e-15 to 1e-3");
   app.add_option("--first", args.size.first, "Number of the first scene")->capture_default_str();
   app.add_option("--threads", args.threads, "Number of threads (default: all)")->check(CLI::Range(1, 4096));
-  app.add_option("-o", args.folder, "Folder for the report and the tables")->required();
+  app.add_option("-o", args.folder, "Folder for honesty.csv, with all entries and their truth")->required();
 }
 
-void print_row(const std::vector<std::string>& cells) {
-  for (const std::string& cell : cells) std::cout << "| " << cell << ' ';
-  std::cout << "|\n";
-}
-
-void print(const Result& chapter) {
-  for (const std::string& paragraph : chapter.paragraphs) std::cout << paragraph << "\n\n";
-  for (const NumberTable& table : chapter.tables) {
-    print_row(table.columns);
-    print_row(std::vector<std::string>(table.columns.size(), "---"));
-    for (const std::vector<std::string>& row : table.rows) print_row(row);
-    std::cout << '\n';
+void print(const HonestyStudy& study) {
+  std::cout << "| claim | accuracy | entries | within | open | exceeded | worst true / reported | wider than asked |\n"
+               "|---|---|---|---|---|---|---|---|\n";
+  for (const HonestyRow& row : study.rows) {
+    std::cout << "| " << to_string(row.claim);
+    if (row.claim == Claim::kEstimated) std::cout << " by " << to_string(row.way);
+    std::cout << " | " << (row.accuracy > 0.0 ? text::shortest(row.accuracy) : "") << " | " << row.entries << " | "
+              << row.holds << " | " << row.open << " | " << row.broken << " | "
+              << (row.claim == Claim::kZero ? "" : text::rounded(row.worst.at_least, 2)) << " | " << row.wide << " |\n";
+  }
+  std::cout << "\nScenes: " << study.scenes.size()
+            << ". Enclosures of both directions that are disjoint: " << study.contradictions << '\n';
+  for (const HonestyScene& scene : study.scenes) {
+    if (!scene.failure.empty()) std::cout << '@' << scene.model << ": " << scene.failure << '\n';
   }
 }
 
@@ -49,41 +50,26 @@ void say_progress(const Progress& progress) {
   if (progress.done % 50 == 0) std::cerr << progress.stage << ": " << progress.done << " of " << progress.total << '\n';
 }
 
-bool is_honest(const HonestyStudy& study) {
-  for (const HonestyScene& scene : study.scenes) {
-    if (!scene.failure.empty()) std::cout << '@' << scene.model << ": " << scene.failure << '\n';
-  }
-  return study.contradictions + study.failures == 0 &&
-         std::ranges::all_of(study.rows, [](const HonestyRow& row) { return row.broken == 0; });
-}
-
-int run(const Arguments& args, std::string command_line) {
-  page::check_output_folder(args.folder);
-  report::StudyReport report;
-  report.title = "Tests of our own claims";
-  report.command_line = std::move(command_line);
+int run(const Arguments& args) {
+  std::filesystem::create_directories(args.folder);
+  std::ofstream file(args.folder / "honesty.csv", std::ios::binary);
   const HonestyStudy study = honesty_study(args.size, args.threads, {say_progress, {}});
-  report.chapters.push_back(honesty_chapter(study));
-  print(report.chapters.front());
-  for (const std::string& note : report::write(report, args.folder)) std::cerr << "note: " << note << '\n';
-  return is_honest(study) ? 0 : 1;
-}
-
-std::string joined(int count, char** words) {
-  std::string line = "exactff_honesty";
-  for (int i = 1; i < count; ++i) line += ' ' + text::shell_word(words[i]);
-  return line;
+  print(study);
+  if (!(file << honesty_csv(study) << std::flush)) throw std::runtime_error("cannot write " + args.folder.string());
+  const bool is_honest = study.contradictions + study.failures == 0 &&
+                         std::ranges::all_of(study.rows, [](const HonestyRow& row) { return row.broken == 0; });
+  return is_honest ? 0 : 1;
 }
 
 }  // namespace
 }  // namespace exactff::experiments
 
 int main(int count, char** words) try {
-  CLI::App app{"Tests whether view factors keep their word, and writes a report."};
+  CLI::App app{"Tests whether view factors keep their word."};
   exactff::experiments::Arguments args;
   exactff::experiments::declare(app, args);
   CLI11_PARSE(app, count, words);
-  return exactff::experiments::run(args, exactff::experiments::joined(count, words));
+  return exactff::experiments::run(args);
 } catch (const std::exception& error) {
   std::cerr << "exactff_honesty: " << error.what() << '\n';
   return 2;

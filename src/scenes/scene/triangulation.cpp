@@ -17,6 +17,7 @@
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
 #include "scene/planar_region.h"
+#include "scene/scene.h"
 
 namespace exactff {
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests what validation/field/openfoam.py and calculix.py read and write, without these programs.
+"""Tests what validation/field/field.py reads and writes, without OpenFOAM and CalculiX.
 
 Usage: field_factors.py PROGRAM FIELD-FOLDER DATA-FOLDER
 
@@ -15,11 +15,9 @@ import unittest
 
 import numpy
 
-program, field, data = map(pathlib.Path, sys.argv[1:4])
-sys.path.insert(0, str(field))
-import calculix  # noqa: E402
-import factors  # noqa: E402
-import openfoam  # noqa: E402
+program, folder, data = map(pathlib.Path, sys.argv[1:4])
+sys.path.insert(0, str(folder))
+import field  # noqa: E402
 
 F = """FoamFile
 {
@@ -50,12 +48,12 @@ VWF = base64.b64decode(
 
 def plates(across, block=1):
     with tempfile.TemporaryDirectory() as name:
-        return factors.Scene(program, data / "field/plates.obj", pathlib.Path(name)).cells(across, block)
+        return field.Scene(program, data / "field/plates.obj", pathlib.Path(name)).cells(across, block)
 
 
 def square_and_triangle():
     points = numpy.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [0, 1, 1], [1, 0, 1]], float)
-    return factors.Cells(points, [[0, 1, 2, 3], [4, 5, 6]], [0, 1], [0, 1], 1.0)
+    return field.Cells(points, [[0, 1, 2, 3], [4, 5, 6]], [0, 1], [0, 1], 1.0)
 
 
 class FieldFactors(unittest.TestCase):
@@ -69,15 +67,15 @@ class FieldFactors(unittest.TestCase):
 
     def test_calculix_gets_triangles_for_polygons(self):
         points = numpy.array([[0, 0, 0], [2, 0, 0], [2, 1, 0], [1, 1, 0], [0, 1, 0]], float)
-        polygon = factors.Cells(points, [[0, 1, 2], [0, 1, 2, 3, 4]], [0, 1], [0, 1], 2.0)
-        cells = calculix.without_polygons(polygon)
+        polygon = field.Cells(points, [[0, 1, 2], [0, 1, 2, 3, 4]], [0, 1], [0, 1], 2.0)
+        cells = field.without_polygons(polygon)
         self.assertEqual(cells.corners, [[0, 1, 2], [5, 0, 1], [5, 1, 2], [5, 2, 3], [5, 3, 4], [5, 4, 0]])
         self.assertEqual(list(cells.patch), [0] + [1] * 5)
         numpy.testing.assert_allclose(cells.areas.sum(), 3)
         numpy.testing.assert_allclose(cells.normals, [[0, 0, 1]] * 6)
 
     def test_calculix_gets_backs_as_one_patch_more(self):
-        cells = calculix.with_backs(square_and_triangle(), [1])
+        cells = field.with_backs(square_and_triangle(), [1])
         self.assertEqual(cells.corners, [[0, 1, 2, 3], [4, 5, 6], [7, 8, 9]])
         self.assertEqual(list(cells.patch), [0, 1, 2])
         numpy.testing.assert_allclose(cells.points[7:], [[1, 0, 1.001], [0, 1, 1.001], [0, 0, 1.001]])
@@ -85,17 +83,17 @@ class FieldFactors(unittest.TestCase):
 
     def test_factors_of_patches_are_weighted_by_area(self):
         faces = numpy.array([[0, 0.25, 0.5], [0, 0, 0.25], [0.125, 0.5, 0]])
-        patches = factors.of_patches(faces, numpy.array([1.0, 3.0, 2.0]), numpy.array([0, 0, 1]))
+        patches = field.of_patches(faces, numpy.array([1.0, 3.0, 2.0]), numpy.array([0, 0, 1]))
         numpy.testing.assert_allclose(patches, [[0.0625, 0.3125], [0.625, 0]])
 
     def test_openfoam_factors_are_read(self):
         with tempfile.TemporaryDirectory() as name:
             case = pathlib.Path(name)
-            openfoam.write_case(case, plates(1))
+            field.write_case(case, plates(1))
             faces = re.findall(r"4\((\d+) (\d+) (\d+) (\d+)\)", (case / "constant/polyMesh/faces").read_text())
             (case / "constant/F").write_text(F)
             (case / "constant/globalFaceFaces").write_text(SEEN)
-            matrix = openfoam.read_factors(case, 4)
+            matrix = field.read_factors(case, 4)
         corners = plates(1).points[numpy.array(faces, int)]
         outward = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2]
         self.assertEqual(list(numpy.sign(outward)), [-1, 1, -1, 1])
@@ -107,7 +105,7 @@ class FieldFactors(unittest.TestCase):
         with tempfile.TemporaryDirectory() as name:
             path = pathlib.Path(name) / "scene.vwf"
             path.write_bytes(VWF)
-            matrix = calculix.read_factors(path, 4)
+            matrix = field.read_vwf(path, 4)
         self.assertEqual([list(numpy.nonzero(row)[0]) for row in matrix], [[3], [2], [1], [0]])
         numpy.testing.assert_allclose(matrix[[0, 1, 2, 3], [3, 2, 1, 0]], [0.1865195] * 2 + [0.54199256] * 2, rtol=1e-7)
 

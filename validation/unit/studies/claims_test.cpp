@@ -12,22 +12,12 @@ const Hooks kUndisturbed;
 
 HonestySize small_honesty() { return {.scenes = 12, .accuracies = {1e-1, 1e-4, 1e-8}, .budgets = {20, 100}}; }
 
-Result small_study(int threads, const Hooks& hooks) {
-  return honesty_chapter(honesty_study(small_honesty(), threads, hooks));
-}
-
-std::string bytes_of_values(const Result& result) {
-  std::string text;
-  for (const CsvFile& table : result.values) text += table.file + '\n' + table.csv;
-  return text;
+std::string small_study(int threads, const Hooks& hooks) {
+  return honesty_csv(honesty_study(small_honesty(), threads, hooks));
 }
 
 TEST(Claims, GiveTheSameBytesOfValuesForAnyNumberOfThreads) {
-  const Result one = small_study(1, kUndisturbed);
-  EXPECT_FALSE(one.paragraphs.empty());
-  EXPECT_EQ(one.values.size(), 2U);
-  EXPECT_EQ(bytes_of_values(one), bytes_of_values(small_study(3, kUndisturbed)));
-  EXPECT_FALSE(one.figures.front().script.empty());
+  EXPECT_EQ(small_study(1, kUndisturbed), small_study(3, kUndisturbed));
 }
 
 TEST(Claims, GiveUpWhenCancelled) {
@@ -71,10 +61,6 @@ TEST(Honesty, NoErrorExceedsTheReportedOneInAFewScenes) {
   }
   study.rows = honesty_rows(study.scenes);
   for (const HonestyRow& row : study.rows) EXPECT_EQ(row.broken, row.entries);
-  const std::string said = honesty_chapter(study).paragraphs.front();
-  EXPECT_NE(said.find(std::to_string(entries) + " of " + std::to_string(entries) + " view factors"), std::string::npos)
-      << said;
-  EXPECT_NE(said.find("estimated by points"), std::string::npos) << said;
 }
 
 }  // namespace
