@@ -133,12 +133,6 @@ def test_the_blocks_in_the_documents_print_what_they_say():
         assert run(sys.executable, "-c", code, cwd=SOURCE).splitlines() == expected
 
 
-def test_the_lines_in_the_readme_run():
-    code, _ = blocks("README.md")[0]
-    assert len(code.splitlines()) <= 4
-    run(sys.executable, "-c", code, cwd=SOURCE)
-
-
 def test_the_doctest_of_the_package():
     code = "import doctest, exactff, sys; sys.exit(doctest.testmod(exactff).failed)"
     run(sys.executable, "-c", code, cwd=SOURCE)
