@@ -59,7 +59,8 @@ def require_same(shown, printed, what):
     lines = [r"(?:.*\n)*?" if line.strip() == "..." else r".*?".join(map(re.escape, line.rstrip().split("..."))) + "\n"
              for line in shown.splitlines()]
     printed = "".join(line.rstrip() + "\n" for line in printed.strip("\n").splitlines())
-    assert re.fullmatch("".join(lines), printed), f"{what}\nprints\n{printed}\nnot\n{shown}"
+    if not re.fullmatch("".join(lines), printed):
+        pytest.fail(f"{what}\nprints\n{printed}\nnot\n{shown}", pytrace=False)
 
 
 # ------------------------------------------------------------------------------------------------------------- to run
