@@ -55,9 +55,9 @@ def blocks_of(text):
 
 
 def require_same(shown, printed, what):
-    """`shown` may have "..." for any lines, or for any text within a line."""
-    lines = [r"(?:.*\n)*?" if line.strip() == "..." else r".*?".join(map(re.escape, line.rstrip().split("..."))) + "\n"
-             for line in shown.splitlines()]
+    """`shown` may have "..." for any lines, or for any text within a line, with the blanks around it."""
+    lines = [r"(?:.*\n)*?" if line.strip() == "..." else
+             ".*?".join(map(re.escape, re.split(r" *\.\.\. *", line.rstrip()))) + "\n" for line in shown.splitlines()]
     printed = "".join(line.rstrip() + "\n" for line in printed.strip("\n").splitlines())
     if not re.fullmatch("".join(lines), printed):
         pytest.fail(f"{what}\nprints\n{printed}\nnot\n{shown}", pytrace=False)
