@@ -6,8 +6,7 @@ the sources after a build. Files that they write stay there.
 console   Lines "$ COMMAND", continued by a backslash, run by bash; the lines between are what they print, on standard
           output and standard error. A line "..." stands for any lines, "..." in a line for any text. Where nothing is
           shown, anything may be printed. The exit code is 0: `check ... || echo "exit code $?"` shows another one.
-python    All blocks of a page are one program. A block that defines tests ("def test_") is a file for pytest. A block
-          "text" right after it is what it prints.
+python    All blocks of a page are one program. A block "text" right after one is what it prints.
 cpp       All blocks of a page are compiled as one function, a block with "int main(" by itself. Nothing is run.
 sh        What takes long, or needs what may not be there. The line above is <!-- run by FILE -->, with the script or
           test that runs these commands, or the same with other arguments. Their flags must be known to the program.
@@ -97,15 +96,10 @@ def run_console(block):
 
 
 def run_python(block, names, shown):
-    if re.search(r"^def test_", block.text, re.M):
-        pathlib.Path("test_page.py").write_text(block.text)
-        printed = run(sys.executable, "-B", "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_page.py")
-    else:
-        with contextlib.redirect_stdout(io.StringIO()) as out:
-            exec(compile(block.text, "page", "exec"), names)
-        printed = out.getvalue()
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        exec(compile(block.text, "page", "exec"), names)
     if shown is not None:
-        require_same(shown, printed, block.text)
+        require_same(shown, out.getvalue(), block.text)
 
 
 def compile_cpp(blocks):
