@@ -189,6 +189,37 @@ struct VertexDerivative {
 };
 
 // The derivatives of F at a receiver. F = n . V / |n|, where V does not depend on the normal n.
+//
+// Each arc of the visible boundary lies on a line in space: an edge, or the cut of a face with the source's plane. If x
+// moves by d, the arc moves, and F changes by
+//
+//   dF = 1/pi sum over arcs of (d . m) integral of (w . n) / r along the arc
+//
+// m is the unit normal of the arc's plane, into the visible region; w a unit direction along the arc; r the distance of
+// the line in this direction; n the unit normal at x. Arcs on the horizon add nothing, since there w . n = 0.
+//
+// Kinks. Where x sees a face edge-on, or lines at different depths as one line, a movement may show or hide something
+// on one side only. F then has no derivative. This is decided by exact signs, whether or not anything there bounds the
+// view now: a sheet seen edge-on inside the view bounds nothing, and where two shadows abut at different depths, F is 0
+// there and on one side. There is no kink where another face covers both sides; along the horizon, so neighbours of the
+// receiver's own face in its plane make none; for edges on one line in space; and where faces join to one surface that
+// hides on both sides. Each plane of a source is judged by itself: where its faces hide each other along an edge-on
+// face, a kink may be reported although the sum over the planes has a derivative.
+//
+// Vertices. Only lines that bound the view move it, so a diagonal of a face that was cut into pieces does not; nor does
+// the horizon. A plane follows three vertices of its face: the lowest that are not on a line; of a face that is not
+// planar, those of its triangle. Other corners move outlines alone. So the derivative is the true one also for faces of
+// more corners, unless such a plane is tilted. Faces without area are left out, although they may get one. Exactly, as
+// sums of balls:
+//
+//   dF/dx + sum dF/dv = 0,   x . dF/dx + sum v . dF/dv = 0,   x X dF/dx + n X dF/dn + sum v X dF/dv = 0
+//
+// F has no derivative by vertices of lines that coincide and would move apart, such as those of two walls that abut
+// without sharing their corners; and of edges in the source's plane, such as the foot of a block on it: if such an
+// edge, or the source's frame, moves one way, a part of the source becomes visible. A face that lies on a visible part
+// of the source has none either: F would jump. Where several planes move in different ways, and where such a face may
+// be hidden by others, a kink may be reported although there is none; this may depend on how a concave face is cut. But
+// no derivative is given where there is none.
 struct Gradient {
   std::optional<Kink> kink;            // set if dF/dx does not exist: the first one found
   std::array<Derivative, 3> position;  // dF/dx by each coordinate of the point, per unit of length
@@ -198,8 +229,8 @@ struct Gradient {
   std::optional<Derivative> along;
   std::vector<GradientArc> arcs;  // on request, the largest part first; not at kinks
   // On request: the vertices by which the derivative is not proved to be zero, and those at kinks, ascending; not at
-  // kinks of dF/dx. The receiver stays. Where a face meets the source's plane, the border moves with both planes. Each
-  // plane follows three vertices (include/README.md); those of the source are `frames`, one for each face.
+  // kinks of dF/dx. The receiver stays. Where a face meets the source's plane, the border moves with both planes. The
+  // three vertices that the source's plane follows are `frames`, one for each face, or for faces that overlap in one.
   std::vector<VertexDerivative> vertices;
   std::vector<std::array<std::uint32_t, 3>> frames;
 };

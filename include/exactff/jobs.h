@@ -27,7 +27,8 @@ struct Progress {
 };
 
 // `cancelled` is called from any thread, every few milliseconds, also within a single pair of receiver and source. It
-// must be quick. The polygon Booleans and the building of Embree's trees do not call it; both can take seconds.
+// must be quick. Reading a scene, the polygon Booleans and the building of Embree's trees do not call it, and can take
+// seconds.
 struct Hooks {
   std::function<void(const Progress&)> progress;
   std::function<bool()> cancelled;

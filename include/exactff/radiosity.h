@@ -52,7 +52,7 @@ struct Balance {
 
 struct Channel {
   std::vector<BoundedValue> radiosity;   // B, for each patch
-  std::vector<BoundedValue> irradiance;  // sum_j F_ij B_j, for each patch
+  std::vector<BoundedValue> irradiance;  // sum_j F_ij B_j, for each patch: the mean over its part that is not buried
   std::vector<double> variation;         // for each patch, by set_variation(); NaN where there is no value
   Balance balance;
   bool is_balanced = true;  // as is_balanced() below, of this channel

@@ -206,6 +206,10 @@ class Atlas {
 // ----------------------------------------------------------------------------------------------------------- picture
 
 enum class Sides { kFront, kBoth };  // kBoth: the back of a face is lit as its front, but emits nothing
+// kAll, as channels of an EXR file: for each source `F.NAME`, its form factor, `visible.NAME` (0: nothing of it is
+// visible, 1: a part, 2: all) and `fraction.NAME`, its visible fraction; `position.X` to `.Z`; the unit normal
+// `normal.X` to `.Z`; `distance` from the start of the ray, not of a lightmap; `id.face` and `id.patch`, counted from 1
+// in the order of the file. 0 where nothing is met.
 enum class Layers { kNone, kAll };
 enum class Bounds { kNone, kAll };
 // kSlope: in every channel the length of the gradient of the sum of form factors along the surface, per unit of length;

@@ -8,7 +8,10 @@
 //
 // Method. Patch i is cut into convex cells on which the visible boundary of patch j has the same corners and edges from
 // every point. This is proved by exact signs at the cells' corners. F(x -> j) is then analytic inside a cell, and Gauss
-// quadrature converges fast.
+// quadrature converges fast. What hides next to nothing from a cell, as the walls of a room do whose corners miss each
+// other by roundings, is left out of its view; the bound of what it hides is part of the interval, also of a certified
+// one. A scene far from the origin is first moved there, if that is exact. A factor depends on the scene, its two
+// patches and the options alone, not on what else is computed.
 // Source: G. Walton, "Calculation of Obstructed View Factors by Adaptive Integration", NISTIR 6925 (2002), for the
 // problem; Tampieri's Eq. (4) for the point factor.
 #pragma once
@@ -69,8 +72,8 @@ struct ViewFactorOptions {
 };
 
 struct ViewFactor {
-  double value = 0.0;  // F_ij, a pure number in [0, 1]
-  double lower = 0.0, upper = 0.0;
+  double value = 0.0;                     // F_ij, a pure number in [0, 1]
+  double lower = 0.0, upper = 0.0;        // between planar patches, upper is at most A_j / A_i, since F_ji is at most 1
   double area_from = 0.0, area_to = 0.0;  // A_i, A_j, in the square of the scene's unit of length
   Claim claim = Claim::kZero;
   Way way = Way::kCells;

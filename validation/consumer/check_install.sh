@@ -81,6 +81,11 @@ for flag in "${flags[@]}"; do
 done
 quietly "pkg-config: building" "$CXX" -std=c++20 "$here/app/main.cpp" -o "$work/by_pkg_config" "${flags[@]}"
 quietly "pkg-config: running" "$work/by_pkg_config" "$here/app/room.obj"
+block() { awk -v start="\`\`\`$1" '$0 == "```" && on { exit } on; $0 == start { on = 1 }' "$top/include/README.md"; }  # the first one
+block cpp > "$work/page.cpp"
+quietly "pkg-config: building the program on the page of C++" "$CXX" -std=c++20 "$work/page.cpp" -o "$work/page" "${flags[@]}"
+printed=$(cd "$top" && "$work/page")
+[ "$printed" = "$(block text)" ] || fail "the program on the page of C++ prints $printed"
 [ "$(pkg-config --modversion exactff)" = "$version" ] || fail "pkg-config names another version than $version"
 
 # Who uses the library is linked with what the build found: Embree 3 or 4, FLINT 2 with Arb or FLINT 3.

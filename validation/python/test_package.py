@@ -99,14 +99,6 @@ def test_the_test_of_accuracy(tmp_path):
     assert "worst at receiver 'r" in strict.stdout and "_check.py" not in strict.stdout
 
 
-def test_the_page_on_pytest_is_a_test_file(tmp_path):
-    page = (SOURCE / "include" / "README.md").read_text().split("### With pytest")[1]
-    code = re.search(r"```python\n(.*?)```", page, re.S)[1]
-    (tmp_path / "test_page.py").write_text(code)
-    printed = run(sys.executable, "-B", "-m", "pytest", "-q", "-p", "no:cacheprovider", tmp_path / "test_page.py", cwd=SOURCE)
-    assert "3 passed" in printed
-
-
 def test_without_numpy_it_says_what_to_install():
     """-S: without the folders in which NumPy is."""
     failed = subprocess.run([sys.executable, "-S", "-c", "import exactff"], capture_output=True, text=True)
@@ -118,25 +110,6 @@ def test_without_numpy_it_says_what_to_install():
 def test_an_occluder_is_found_from_its_shadow():
     """The script asserts that it converges."""
     assert run(sys.executable, "-B", EXAMPLES / "find_occluder.py")
-
-
-def blocks(document):
-    text = (SOURCE / document).read_text()
-    return re.findall(r"```python\n(.*?)```(?:\n\nprints\n\n((?:    [^\n]*\n)+))?", text, re.S)
-
-
-def test_the_blocks_in_the_documents_print_what_they_say():
-    with_output = [(code, printed) for code, printed in blocks("include/README.md") if printed]
-    assert len(with_output) == 2
-    for code, printed in with_output:
-        expected = [line[4:] for line in printed.rstrip().splitlines()]
-        assert run(sys.executable, "-c", code, cwd=SOURCE).splitlines() == expected
-
-
-def test_the_lines_in_the_readme_run():
-    code, _ = blocks("README.md")[0]
-    assert len(code.splitlines()) <= 4
-    run(sys.executable, "-c", code, cwd=SOURCE)
 
 
 def test_the_doctest_of_the_package():

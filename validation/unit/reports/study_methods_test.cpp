@@ -142,7 +142,7 @@ TEST(MethodStudy, HoldsEverySettingOfTheSweeps) {
   }
 }
 
-// A method of a user, added as include/README.md explains: what a function makes of the exact method.
+// A method of a user, added as methods.h explains: what a function makes of the exact method.
 using Made =
     std::function<methods::Estimate(methods::Evaluator& exact, const methods::PreparedSource&, const Settings&)>;
 
