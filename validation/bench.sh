@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# bench.sh [--quick]: builds and runs the benchmarks, then prints the tables of validation/README.md. Times are CPU
+# bench.sh [--quick]: builds and runs the benchmarks, then prints the tables of validation/measurements.md. Times are CPU
 # times: medians of repetitions in random order within one run. The results are kept as JSON in build/results. Google
 # Benchmark warns about a debug build: this is about Debian's package, not about exactff. After test.sh, only the
 # benchmarks are compiled. Takes five minutes on an idle machine; with --quick (fewer repetitions, no scene of a million

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# gallery.sh [FOLDER]: renders the pictures of the READMEs with build/exactff (EXACTFF_BUILD names another build folder)
+# gallery.sh [FOLDER]: renders the pictures of the pages with build/exactff (EXACTFF_BUILD names another build folder)
 # into data/pictures, or into FOLDER: 1,200 pixels wide, with 3 x 3 points a pixel; those of all light are smaller. Takes about
 # an hour on two cores, most of it for the forest. The same program gives the same bytes.
 set -euo pipefail
@@ -46,4 +46,11 @@ map=(data/scenes/lightmap_room.obj --lightmap 512x512)
   --svg "$out/cornell_box_view.svg" > /dev/null
 "$program" point @teapot:segments=8 --at -3 0.4 0 --normal 0 0 1 --on floor --source light --plain \
   --svg "$out/teapot_outline.svg" > /dev/null
+"$program" point data/scenes/blinds_room.obj --at 3 0 3.3 --normal 0 1 0 --source window --adaptive --eps-b 0.01 --plain \
+  --svg "$out/blinds_leaves.svg" > /dev/null
+if command -v xvfb-run > /dev/null; then  # packages xvfb, xauth and python3-vtk9: Debian's VTK draws by X
+  "$program" truth "${box[0]}" --on floor,ceiling,back,left,right,short_block,tall_block --grid 256x256 -o "$cells/map.csv" \
+    --vtk "$cells/map.vtp"
+  xvfb-run -a python3 validation/vtk/draw_cornell_box.py "$cells/map.vtp" "$out/cornell_box_map.png"
+fi
 ls -l "$out"

@@ -22,8 +22,8 @@
 // A line "# unit mm" (OBJ, OFF) or "comment unit mm" (PLY) among the first 20 is Scene::unit, which the writers keep.
 //
 // Files without materials get Kd 1 and Ke 0. Text is read as doubles, correctly rounded, even where a PLY header says
-// float. Files of other known kinds (VTK, STEP, IFC, Abaqus, Nastran, EnergyPlus, ...) are refused with the name
-// of a converter.
+// float. Names that are not UTF-8 are read as Latin-1 (Windows-1252), with a warning. Files of other known kinds (VTK,
+// STEP, IFC, Abaqus, Nastran, EnergyPlus, ...) are refused with the name of a converter.
 #pragma once
 
 #include <filesystem>

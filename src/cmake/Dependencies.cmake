@@ -22,9 +22,10 @@ find_package(fmt 9 REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 include(ImportLibrary)
 
-# The Booleans allocate and free millions of small numbers, and jemalloc is faster at that (src/README.md has the
-# figure). Only the program is linked with it, because a library must not choose its user's allocator. Sanitizers have
-# their own.
+# The Booleans allocate and free millions of small numbers, and jemalloc is faster at that. Without it
+# (-DEXACTFF_JEMALLOC=OFF), 10,000 random triangles with `--engine boolean` take 58 % more processor time (2.69 s, not
+# 1.66 s), `matrix gunter2.vs3 --accuracy 1e-2` 7 % more; `truth` and `view` the same to within 4 % (medians of pairs).
+# Only the program is linked with it, because a library must not choose its user's allocator. Sanitizers have their own.
 if(EXACTFF_PROGRAM AND EXACTFF_JEMALLOC AND NOT EXACTFF_SANITIZE)
   exactff_import_library(jemalloc jemalloc/jemalloc.h jemalloc)
 endif()

@@ -1,4 +1,4 @@
-"""tables.py FILE...: prints the tables of validation/README.md in Markdown, from the JSON output of exactff_bench: medians.
+"""tables.py FILE...: prints the tables of validation/measurements.md in Markdown, from the JSON output of exactff_bench: medians.
 
 Exits with 1 if a benchmark failed or the engines' values differ.
 """

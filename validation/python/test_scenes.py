@@ -276,9 +276,7 @@ def test_a_mesh_of_meshio_keeps_the_names_of_its_groups(tmp_path):
         "$Elements\n3\n1 2 2 9 1 1 2 3\n2 2 2 7 2 1 3 4\n3 2 2 7 2 1 4 2\n$EndElements\n")
     with pytest.raises(exactff.InputError, match="is a Gmsh file"):
         exactff.Scene.read(tmp_path / "room.msh")
-    page = (SCENES.parent / "README.md").read_text()
-    code = next(part for part in page.split("```python\n")[1:] if "from_meshio" in part).split("```")[0]
-    exec(code.replace("room.", f"{tmp_path}/room."), {})
+    exactff.Scene.from_meshio(tmp_path / "room.msh").write(tmp_path / "room.obj")
     scene = exactff.Scene.read(tmp_path / "room.obj")
     assert {patch.name: len(patch.faces) for patch in scene.patches} == {"floor": 1, "a wall": 2}
 
@@ -286,8 +284,8 @@ def test_a_mesh_of_meshio_keeps_the_names_of_its_groups(tmp_path):
 def test_polygons_with_names_become_patches(tmp_path):
     surfaces = [types.SimpleNamespace(Name=name, coords=[(0, 0, z), (1, 0, z), (1, 1, z), (0, 1, z)][:corners])
                 for name, z, corners in (("floor", 0, 4), ("Roof 1", 1, 3))]
-    page = (SCENES.parent / "README.md").read_text()
-    code = next(part for part in page.split("```python\n")[1:] if "from geomeppy" in part).split("```")[0]
+    page = (SCENES.parent / "guide" / "scenes.md").read_text()
+    code = page[page.index("from geomeppy") :].split("```")[0]
     code = code[code.index("corners ="):].replace("house.", f"{tmp_path}/house.")
     exec(code, {"exactff": exactff, "surfaces": surfaces})
     scene = exactff.Scene.read(tmp_path / "house.obj")

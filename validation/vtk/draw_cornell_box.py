@@ -3,7 +3,7 @@
 
 usage: draw_cornell_box.py MAP.vtp PICTURE.png
 
-MAP.vtp is a file of `exactff truth --vtk`, and the scene is the file beside it. data/README.md has the commands.
+MAP.vtp is a file of `exactff truth --vtk`, and the scene is the file beside it. validation/gallery.sh has the commands.
 """
 import pathlib
 import sys

@@ -187,7 +187,7 @@ void LateNote::follow(const Progress& progress) {
 std::string words_on_speed(const matrix::Request& request) {
   const ViewFactorOptions& factors = request.options.factors;
   constexpr double kCoarse = 1e-3;
-  constexpr double kFine = 1e-9;  // below, certified entries cost less (validation/view_factors.md)
+  constexpr double kFine = 1e-9;  // below, certified entries cost less (validation/measurements.md)
   std::vector<std::string> ways;
   if (factors.certify && factors.accuracy >= kFine) ways.emplace_back("no --certify, so that errors are estimated");
   if (!factors.certify && factors.accuracy < kFine)

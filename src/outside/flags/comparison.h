@@ -63,7 +63,8 @@ struct Comparison {
 
 [[nodiscard]] bool is_study_file(const std::string& path);  // by its extension, .study
 
-// Reads a .study file (data/README.md) and loads its scenes. Throws one InputError with the line of every problem.
+// Reads a .study file (data/guide/methods.md) and loads its scenes. Throws one InputError with the line of every
+// problem.
 [[nodiscard]] report::Plan read_study_file(const std::filesystem::path& file, const report::Effort& effort = {});
 
 // --- its syntax ---

@@ -33,7 +33,7 @@ constexpr std::string_view kBlender = "Blender: export Wavefront (.obj), which k
 constexpr std::string_view kMeshio =
     "python3 -m exactff convert IN OUT.obj, which keeps the names of groups (it needs exactff for Python and meshio)";
 constexpr std::string_view kScript =
-    "a script that gives exactff.Scene its polygons and their names (data/README.md shows one)";
+    "a script that gives exactff.Scene its polygons and their names (data/guide/scenes.md shows one)";
 constexpr std::string_view kCad = "FreeCAD, or gmsh IN -2 -o OUT.stl";
 constexpr std::string_view kUnpack = "its unpacker";
 
@@ -62,7 +62,7 @@ constexpr ForeignKind kIfc{"an IFC file",
 constexpr ForeignKind kGbxml{"a gbXML file", "a BIM program: export Wavefront (.obj)"};
 constexpr ForeignKind kEnergyPlus{"an EnergyPlus input file",
                                   "geomeppy in Python, whose surfaces have a Name and coords, and exactff.Scene "
-                                  "(data/README.md shows a script)"};
+                                  "(data/guide/scenes.md shows a script)"};
 constexpr ForeignKind kEpJson{"an EnergyPlus input file (epJSON)", kScript};
 constexpr ForeignKind kRadiance{"a Radiance scene", kScript};
 constexpr ForeignKind kPbrt{"a pbrt scene", "pbrt --toply IN, which writes its triangle meshes as PLY files"};
