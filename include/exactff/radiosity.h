@@ -180,7 +180,8 @@ void require_exchangeable(const Scene& scene, const matrix::ProgramFormat* forma
 
 inline constexpr double kStefanBoltzmann = 5.670374419e-8;  // sigma, W / (m^2 K^4)
 
-// What is known of a surface: its temperature in K, or the heat in W that it gives off, net. The scene is in metres.
+// What is known of a surface: its temperature in K, or the heat in W that it gives off, net. Lengths are in
+// the scene's unit, or in metres if it has none.
 struct Known {
   std::optional<double> temperature = {}, heat = {};
 };
@@ -205,10 +206,10 @@ struct Condition {
 // This is the system of radiosities with rho = 1 where Q is known, so J, H, and all that follows from them have bounds.
 struct Temperatures {
   std::vector<Selection> patches;
-  std::vector<double> areas, emissivities;
-  std::vector<BoundedValue> temperatures;  // in K; both ends are what was given, where it was
-  std::vector<BoundedValue> heats;         // in W, net, given off
-  BoundedValue to_back, to_open;           // heat that goes there, net; 0 where all rows prove that nothing does
+  std::vector<double> areas, emissivities;  // areas in m^2
+  std::vector<BoundedValue> temperatures;   // in K; both ends are what was given, where it was
+  std::vector<BoundedValue> heats;          // in W, net, given off
+  BoundedValue to_back, to_open;            // heat that goes there, net; 0 where all rows prove that nothing does
   BoundedValue unbalanced;       // the sum of all heats less these two; its bounds hold 0 where rows add up to 1
   Claim claim = Claim::kZero;    // of the bounds
   std::string no_bound, remedy;  // as in Channel

@@ -29,6 +29,7 @@ inline constexpr SceneId kAnyScene{0};
 // A unit of length. Scenes need none; it is kept for people and for files.
 enum class Unit { kNone, kMillimetre, kCentimetre, kMetre, kInch, kFoot };
 [[nodiscard]] std::string_view name_of(Unit unit);     // "mm", "cm", "m", "in", "ft"; "" for none
+[[nodiscard]] double metres(Unit unit);                // in one of it, rounded once; 1 for none
 [[nodiscard]] Unit unit_named(std::string_view text);  // throws InputError for another text
 
 // A face may have two sets of texture coordinates, 0 and 1.

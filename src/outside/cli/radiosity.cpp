@@ -493,6 +493,7 @@ void print_temperatures(const Scene& scene, const radiosity::Temperatures& found
             << " by the bounds.\nHeat to (back): " << bounded_text(found.to_back)
             << " W, to (open): " << bounded_text(found.to_open)
             << " W. The bounds hold if those of the view factors do: " << to_string(found.claim) << ".\n";
+  if (scene.unit() == Unit::kNone) std::cout << "Lengths count as metres; --unit states another unit.\n";
 }
 
 // Values by the balanced matrix, if there is one: then no heat is made.

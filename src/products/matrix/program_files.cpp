@@ -222,8 +222,9 @@ Texts nek(const Square& all) {
 
 // Nodes are numbered from 1; after the patches comes the rest. Each pair once.
 Texts esatan(const Square& all) {
-  std::string text =
-      "# exactff " + std::string(kVersion) + ", radiative conductors, scene hash " + all.scene->hash() + '\n';
+  std::string text = "# exactff " + std::string(kVersion) + ", radiative conductors in " +
+                     (all.scene->unit() == Unit::kNone ? "squares of the scene's unit of length" : "m^2") +
+                     ", scene hash " + all.scene->hash() + '\n';
   std::size_t nodes = 0;
   const auto name = [&](const std::string& node) {
     text += "# node " + std::to_string(++nodes) + ": " + text::in_quotes(node) + '\n';
@@ -232,6 +233,7 @@ Texts esatan(const Square& all) {
   for (const auto& [rest, values] : all.rest) name(std::string(rest));
   const auto add = [&](std::size_t i, std::size_t j, double conductor) {
     if (conductor <= 0.0) return;
+    conductor *= metres(all.scene->unit()) * metres(all.scene->unit());
     text += "GR(" + std::to_string(i) + ", " + std::to_string(j) + ") = " + text::shortest(conductor) + ";\n";
   };
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -258,7 +260,7 @@ constexpr std::array kFormats{
                   "Write view factors for Nek5000 and NekRS; a patch named 12:3 is face 3 of element 12",
                   "bounds; names, unless all are as 12:3; patches are numbered in the order of the rows", false, nek},
     ProgramFormat{"esatan", "ESATAN", ".gr",
-                  "Write the conductors as lines GR(1, 2) = ...; computes backs and the sky, too",
+                  "Write the conductors in m^2 as lines GR(1, 2) = ...; computes backs and the sky, too",
                   "bounds; comments have the names", true, esatan}};
 
 }  // namespace

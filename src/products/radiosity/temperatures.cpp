@@ -132,12 +132,14 @@ Temperatures temperatures(const Scene& scene, const matrix::Matrix& given, const
     for (const ViewFactor& f : *factors) result.claim = matrix::weaker(result.claim, f.claim);
   }
   const auto bounded = [](const ViewFactor& f) { return BoundedValue{f.value, f.lower, f.upper}; };
+  const double square_metres = metres(scene.unit()) * metres(scene.unit());
+  constexpr double kRoundedAreas = matrix::kRoundedAreas + 0x1p-50;  // with the unit and its square
   std::vector<BoundedValue> areas, eps, from_rest, black, given_flux, positive, negative;
   bool any_negative = false;
   for (std::size_t i = 0; i < n; ++i) {
     const Known& known = conditions.patches[i];
-    const double area = matrix.factors.at(i, 0).area_from, rho = system.reflectances[i];
-    areas.push_back(widened(area, matrix::kRoundedAreas));
+    const double area = matrix.factors.at(i, 0).area_from * square_metres, rho = system.reflectances[i];
+    areas.push_back(widened(area, kRoundedAreas));
     eps.push_back(widened(1.0 - rho, 0x1p-52));
     result.areas.push_back(area);
     result.emissivities.push_back(1.0 - rho);
@@ -146,9 +148,8 @@ Temperatures temperatures(const Scene& scene, const matrix::Matrix& given, const
     };
     from_rest.push_back(arrives(matrix.back[i], conditions.back) + arrives(matrix.open[i], conditions.open));
     black.push_back(known.temperature ? black_emission(*known.temperature) : exact(0.0));
-    given_flux.push_back(known.heat && area > 0.0 && *known.heat != 0.0
-                             ? widened(*known.heat / area, 2.0 * matrix::kRoundedAreas)
-                             : exact(0.0));
+    given_flux.push_back(
+        known.heat && area > 0.0 && *known.heat != 0.0 ? widened(*known.heat / area, 2.0 * kRoundedAreas) : exact(0.0));
     if (known.heat) system.reflectances[i] = 1.0;
     const BoundedValue flux = given_flux.back(), none = exact(0.0);
     positive.push_back(product(from_rest.back(), exact(system.reflectances[i])) +
@@ -162,7 +163,7 @@ Temperatures temperatures(const Scene& scene, const matrix::Matrix& given, const
   for (std::size_t i = 0; i < n; ++i) {
     if (positive[i].upper <= kMuchHeat && negative[i].upper <= kMuchHeat) continue;
     text::refuse(name_of(scene, result.patches[i]) + " gives off more than " + text::short_number(kMuchHeat) +
-                     " W per unit of area",
+                     " W per square metre",
                  "doubles end near 1.8e308, below sums of such heats",
                  "check its T or Q, and those of (back) and (open)");
   }
@@ -373,7 +374,7 @@ table::Table table_of(const Scene& scene, const Temperatures& found, const ViewF
        table::numbers("temperature_lower,temperature_upper", Strength::kStated, "K"),
        table::numbers("heat", Strength::kEstimated, "W"),
        table::numbers("heat_lower,heat_upper", Strength::kStated, "W"), table::numbers("emissivity", Strength::kGiven),
-       table::numbers("area", Strength::kEstimated, "area"), table::texts("claim", Strength::kProved)});
+       table::numbers("area", Strength::kEstimated, "m2"), table::texts("claim", Strength::kProved)});
   const std::string_view claim = to_string(found.claim);
   for (std::size_t i = 0; i < found.patches.size(); ++i) {
     const BoundedValue &t = found.temperatures[i], &q = found.heats[i];

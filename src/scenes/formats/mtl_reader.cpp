@@ -22,6 +22,10 @@ class MtlReader {
     text::TextLines lines(text);
     while (lines.next(line_)) read_line();
     if (!converted_.names().empty()) warnings_.add(converted_.warning(file_));
+    if (!first_image_.what.empty()) {
+      if (images_ > 1) first_image_.what += ", as are " + text::counted(images_ - 1, "other map");
+      warnings_.add(first_image_);
+    }
     return std::move(materials_);
   }
 
@@ -48,6 +52,8 @@ class MtlReader {
   bool counts_ = false;  // false before any newmtl and in a repeated material
   bool started_ = false;
   ConvertedNames converted_;
+  std::size_t images_ = 0;  // lines that name one
+  Problem first_image_;
   std::vector<Material> materials_;
   std::unordered_set<std::string> names_;
 };
@@ -66,6 +72,11 @@ void MtlReader::read_line() {
   if (keyword == "newmtl") return start_material(text::trimmed(rest));
   const bool transparency = keyword == "d" || keyword == "Tr" || keyword == "illum";
   if (transparency && started_) read_transparency(keyword, rest);
+  if (started_ && (keyword == "map_Kd" || keyword == "map_Ke") && images_++ == 0) {
+    first_image_ = {file_, line_.number, of_material(keyword) + " is an image",
+                    "images are not read, and the colour beside it holds everywhere",
+                    "give the material the mean colour of its image"};
+  }
   if (keyword != "Kd" && keyword != "Ke") return;
   if (!started_)
     return fail(std::string(keyword) + " before any newmtl", "it does not belong to a material", "move it");

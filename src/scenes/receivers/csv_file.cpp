@@ -19,25 +19,6 @@ namespace {
 constexpr std::array<std::string_view, 8> kColumns = {"id", "x", "y", "z", "nx", "ny", "nz", "on"};
 constexpr std::size_t kId = 0, kX = 1, kNx = 4, kOn = 7;
 
-// Further columns of truth files, and of the exact.csv of a comparison.
-constexpr std::array<std::string_view, 17> kResultColumns = {"source",
-                                                             "exact",
-                                                             "lower",
-                                                             "upper",
-                                                             "unoccluded",
-                                                             "visible_fraction",
-                                                             "radiosity_r",
-                                                             "radiosity_g",
-                                                             "radiosity_b",
-                                                             "largest_rho_b",
-                                                             "status",
-                                                             "sight",
-                                                             "ux",
-                                                             "uy",
-                                                             "uz",
-                                                             "u",
-                                                             "v"};
-
 class ReceiverTable {
  public:
   ReceiverTable(const std::filesystem::path& path, const Scene& scene)
@@ -81,9 +62,10 @@ class ReceiverTable {
     const std::size_t before = problem_count_;
     const auto has = [&](std::string_view name) { return std::find(names.begin(), names.end(), name) != names.end(); };
     is_truth_ = has("receiver") && has("source") && has("exact");
+    const bool has_results = is_truth_ && has("on");  // it has all columns of receivers, and others
     for (std::size_t i = 0; i < names.size(); ++i) {
       const auto known = find_column(names[i]);
-      if (known == kColumns.end() && is_truth_ && is_result(names[i])) continue;
+      if (known == kColumns.end() && has_results) continue;
       if (known == kColumns.end()) {
         complain("unknown column " + text::in_quotes(names[i]), "a misspelt name would be ignored without any warning",
                  "the columns are id,x,y,z,nx,ny,nz,on");
@@ -105,9 +87,6 @@ class ReceiverTable {
   // In a truth file, the receiver's id is called `receiver`.
   [[nodiscard]] decltype(kColumns)::const_iterator find_column(std::string_view name) const {
     return std::find(kColumns.begin(), kColumns.end(), is_truth_ && name == "receiver" ? kColumns[kId] : name);
-  }
-  static bool is_result(std::string_view name) {
-    return std::find(kResultColumns.begin(), kResultColumns.end(), name) != kResultColumns.end();
   }
 
   void take_row(const std::vector<std::string>& fields) {

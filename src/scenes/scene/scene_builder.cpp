@@ -36,6 +36,8 @@ int tenths_of_millimetres(Unit unit) { return std::ranges::find(kUnits, unit, &U
 
 std::string_view name_of(Unit unit) { return std::ranges::find(kUnits, unit, &UnitRow::unit)->name; }
 
+double metres(Unit unit) { return unit == Unit::kNone ? 1.0 : tenths_of_millimetres(unit) / 1e4; }
+
 Unit unit_named(std::string_view text) {
   const auto* const found = std::ranges::find(kUnits, text, &UnitRow::name);
   if (found != kUnits.end() && found->unit != Unit::kNone) return found->unit;

@@ -190,7 +190,7 @@ class ViewFactorMatrix:
     def temperatures(self, known: Mapping[str, float], heats: Mapping[str, float] = {}, *, save: Optional[Path] = None,
                      existing: Literal["refuse", "replace"] = "refuse") -> Temperatures:
         """Temperatures of gray, diffuse surfaces of emissivity 1 - Kd that exchange sigma T^4, as ``exactff radiosity
-        --temperatures`` solves for them, with bounds. The scene is in metres.
+        --temperatures`` solves for them, with bounds. Lengths are in the scene's unit, or in metres if it has none.
 
         Parameters
         ----------
