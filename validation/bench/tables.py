@@ -64,8 +64,9 @@ for scene in SCENES:
     rays = min(coherent, incoherent) if coherent and incoherent else None
     row(scene, engine, boolean, ratio(boolean, engine), ratio(engine, rays),
         *(ms(f"certified/edges/{scene}/{n}") for n in (100, 1000, 10_000)))
-print(f"\nA million random triangles: {text(ratio(ms('certified/edges/sparse/1000000'), 1000))} s and "
-      f"{text(figure('memory/sparse/1000000', 'peak_mib'))} MiB, the scene included.")
+if figure("memory/sparse/1000000"):
+    print(f"\nA million random triangles: {text(ratio(ms('certified/edges/sparse/1000000'), 1000))} s and "
+          f"{text(figure('memory/sparse/1000000', 'peak_mib'))} MiB, the scene included.")
 
 head("Cornell box, light to a floor grid of 32 x 32: the certified value, median over receivers.", "receivers", "count", "us")
 for kind in "unoccluded", "partly":
