@@ -129,6 +129,7 @@ TEST(ObjReader, MalformedFilesAreNamedByLine) {
       {"\n\n", "s.obj: has no faces (there is nothing to compute with); is it a Wavefront OBJ file?"},
       {kSquare, "s.obj: has no faces (there is nothing to compute with); is it a Wavefront OBJ file?"},
       {"v 1 2\n", "s.obj:1: a vertex has fewer than three coordinates (a point needs all three); write v x y z"},
+      {"\xEF\xBB\xBF# dos\r\n\rv 1 2\r\n", "s.obj:3: a vertex has fewer than three coordinates ("},
       {"v\n", "s.obj:1: a vertex has fewer than three coordinates ("},
       {"\n v 1 2 x\n", "s.obj:2: 'x' is not a number (a coordinate is one exact number); write a decimal number such"},
       {"v 1 2 3y\n", "s.obj:1: '3y' is not a number ("},
