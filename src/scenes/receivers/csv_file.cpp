@@ -62,10 +62,9 @@ class ReceiverTable {
     const std::size_t before = problem_count_;
     const auto has = [&](std::string_view name) { return std::find(names.begin(), names.end(), name) != names.end(); };
     is_truth_ = has("receiver") && has("source") && has("exact");
-    const bool has_results = is_truth_ && has("on");  // it has all columns of receivers, and others
     for (std::size_t i = 0; i < names.size(); ++i) {
       const auto known = find_column(names[i]);
-      if (known == kColumns.end() && has_results) continue;
+      if (known == kColumns.end() && is_truth_) continue;  // a result
       if (known == kColumns.end()) {
         complain("unknown column " + text::in_quotes(names[i]), "a misspelt name would be ignored without any warning",
                  "the columns are id,x,y,z,nx,ny,nz,on");

@@ -2,14 +2,10 @@
 #include "kernel/disc.h"
 
 #include <acb.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <functional>
-#include <numbers>
-
-#include "generate/random.h"
 #include "kernel/gauss.h"
+#include "support/shapes.h"
+#include "support/test.h"
 
 namespace exactff::kernel {
 namespace {
@@ -88,7 +84,7 @@ class Discs : public testing::Test {
     EXPECT_GT(finite, kTrials / 4);
   }
 
-  generate::Random random_{20261123};
+  Random random_{20261123};
 };
 
 TEST_F(Discs, HoldSumsAndProducts) {
@@ -102,39 +98,6 @@ TEST_F(Discs, HoldSumsAndProducts) {
               [](acb_ptr f, acb_srcptr z, acb_srcptr) { acb_sqr(f, z, kBits); });
   expect_held([](const Disc& a, const Disc&) { return 0.7 * a; },
               [](acb_ptr f, acb_srcptr z, acb_srcptr) { acb_mul(f, z, Complex(0.7, 0.0).get(), kBits); });
-}
-
-TEST_F(Discs, HoldQuotientsAndRoots) {
-  expect_held([](const Disc& a, const Disc&) { return inverse(a); },
-              [](acb_ptr f, acb_srcptr z, acb_srcptr) { acb_inv(f, z, kBits); });
-  expect_held([](const Disc& a, const Disc& b) { return a / b; },
-              [](acb_ptr f, acb_srcptr z, acb_srcptr w) { acb_div(f, z, w, kBits); });
-  expect_held([](const Disc& a, const Disc&) { return square_root(a); },
-              [](acb_ptr f, acb_srcptr z, acb_srcptr) { acb_sqrt(f, z, kBits); });
-}
-
-TEST_F(Discs, HoldTheArcTangentOfRoots) {
-  expect_held([](const Disc& a, const Disc&) { return atan_of_root(a); },
-              [](acb_ptr f, acb_srcptr z, acb_srcptr) {
-                Complex root;
-                acb_sqrt(root.get(), z, kBits);
-                acb_atan(f, root.get(), kBits);
-                acb_div(f, f, root.get(), kBits);
-              });
-  EXPECT_LE(std::abs(atan_of_root(Disc{0.0, 0.0}).centre - 1.0), atan_of_root(Disc{0.0, 0.0}).radius);
-}
-
-// Radii are attained: nowhere is a bound more than a few times too large.
-TEST_F(Discs, AreNotMuchLargerThanNeeded) {
-  for (int i = 0; i < kTrials; ++i) {
-    const double m = between(0.1, 4.0), e = between(0.0, 0.9) * m, least = m - e;
-    const Disc a{m, e};
-    EXPECT_LE(inverse(a).radius, (1.0 / least - 1.0 / m) * 1.0001 + 1e-14);
-    EXPECT_LE(square_root(a).radius, (std::sqrt(m) - std::sqrt(least)) * 1.0001 + 1e-14);
-    EXPECT_LE(square(a).radius, (2.0 * m + e) * e * 1.0001 + 1e-14);
-    EXPECT_LE(atan_of_root(Disc{m, 0.0}).radius, 0x1p-46);
-    EXPECT_LE(atan_of_root(a).radius, 0.34 * e + 1e-14);
-  }
 }
 
 TEST_F(Discs, FailWhereTheFunctionIsNotAnalytic) {

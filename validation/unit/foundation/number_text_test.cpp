@@ -1,17 +1,11 @@
 #include "text/number_text.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
 #include <clocale>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <utility>
-#include <vector>
 
+#include "exactff/error.h"
 #include "kernel/numbers.h"
+#include "support/test.h"
+#include "text/csv_dialect.h"
 
 namespace exactff {
 namespace {
@@ -82,17 +76,54 @@ TEST(NumberText, RejectsWhatIsNoNumber) {
   }
 }
 
-TEST(NumberText, TheLocaleDoesNotMatter) {
-  const char* const changed = std::setlocale(LC_ALL, "de_DE.UTF-8");  // where it is installed
-  EXPECT_EQ(text::parse_number("1.5").value, 1.5);
-  EXPECT_EQ(text::parse_number("1,5").fault, text::NumberFault::kComma);
-  if (changed != nullptr) std::setlocale(LC_ALL, "C");
+std::vector<std::string> lines_of(const std::string& text) {
+  const TemporaryDirectory directory;
+  text::CsvLines lines(directory.write("a.csv", text), "a CSV file");
+  std::vector<std::string> result;
+  for (std::string_view line; lines.next(line);) {
+    result.emplace_back(line);
+    EXPECT_EQ(lines.number(), result.size());
+  }
+  return result;
 }
 
-TEST(NumberText, MessagesQuoteTheTextAndCutItShort) {
-  EXPECT_EQ(describe(text::NumberFault::kTooLarge, "1e400"), "'1e400' is too large for a double");
-  EXPECT_EQ(describe(text::NumberFault::kNotANumber, std::string(50, 'x')),
-            "'" + std::string(40, 'x') + "...' is not a number");
+using List = std::vector<std::string>;
+
+TEST(CsvLines, EndInAnyWay) {
+  EXPECT_EQ(lines_of("a\nb\r\nc\rd"), (List{"a", "b", "c", "d"}));
+  EXPECT_EQ(lines_of("a\n\n\r\n\rb\n"), (List{"a", "", "", "", "b"}));
+  EXPECT_EQ(lines_of(""), List{});
+  EXPECT_EQ(lines_of("\n"), List{""});
+}
+
+// The file is read in blocks of 65536 bytes: here CR LF and a long line cross block borders.
+TEST(CsvLines, LieAcrossBlocks) {
+  for (const std::size_t length : {65533U, 65534U, 65535U, 65536U, 65537U, 200000U}) {
+    const std::string line(length, 'x');
+    EXPECT_EQ(lines_of(line + "\r\nb\r\n"), (List{line, "b"})) << length;
+  }
+}
+
+TEST(CsvLines, RefuseWhatIsNoText) {
+  const TemporaryDirectory directory;
+  const auto refusal = [&](const std::filesystem::path& path) -> std::string {
+    try {
+      text::CsvLines lines(path, "a CSV file");
+      for (std::string_view line; lines.next(line);) {
+      }
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  using namespace std::string_literals;
+  EXPECT_HOLDS(refusal(directory.path()), "is a folder");
+  EXPECT_HOLDS(refusal(directory.path() / "none.csv"), "cannot be opened");
+  EXPECT_HOLDS(refusal(directory.write("u.csv",
+                                       "\xFF\xFE"
+                                       "a\0"s)),
+               "UTF-16");
+  EXPECT_HOLDS(refusal(directory.write("z.csv", std::string(70000, 'a') + "\0"s)), "zero bytes");
 }
 
 }  // namespace

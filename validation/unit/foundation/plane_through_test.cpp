@@ -1,16 +1,12 @@
 // Planes that are prepared for the sides of many points: the exact signs, and boxes on the safe side.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "generate/random.h"
 #include "kernel/filter.h"
 #include "support/random_scenes.h"
+#include "support/shapes.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {
 
-using generate::Random;
 using kernel::PlaneThrough;
 
 // Coordinates that make many determinants zero or nearly so, or that leave the range of the filter.

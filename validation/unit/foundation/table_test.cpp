@@ -1,18 +1,9 @@
 // Tables: what is written is read back to the same bits, in every format; what is damaged or old is refused.
 #include "exactff/table.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <fstream>
-#include <random>
-#include <sstream>
-
 #include "exactff/error.h"
-#include "support/complaint.h"
-#include "support/program.h"
 #include "support/random_scenes.h"
+#include "support/test.h"
 #include "table/csv.h"
 #include "table/fields.h"
 #include "text/text_lines.h"
@@ -31,7 +22,7 @@ class Tables : public testing::Test {
   }
 
  private:
-  const validation::TemporaryDirectory directory_{validation::memory_folder()};
+  const TemporaryDirectory directory_{memory_folder()};
 };
 
 // Any bits but those of NaN, which a table does not distinguish; often a special value.
@@ -145,16 +136,6 @@ TEST_F(Tables, KeepUnknownColumns) {
   EXPECT_EQ(read_back.line_of(1), 4U);
 }
 
-// As a spreadsheet writes it where the comma is the decimal sign.
-TEST_F(Tables, AreReadWithSemicolonsAndDecimalCommas) {
-  const Table table("kind", {}, {{.name = "name", .type = Type::kText}, {.name = "value"}});
-  std::string text = csv_text(table);
-  text.replace(text.rfind("name,value"), 10, "name;value");
-  const Table read_back = read(file("t.csv", text + "a;0,5\nb;\n"));
-  EXPECT_EQ(read_back.at(0, 1), Cell(0.5));
-  EXPECT_EQ(read_back.at(1, 1), Cell());
-}
-
 TEST_F(Tables, OfOlderVersionsAreRefused) {
   const auto old = file("t.csv", "# exactff 0.1.0 truth: form factors\nreceiver,exact\n1,0.5\n");
   EXPECT_THROW((void)read(old), InputError);
@@ -185,49 +166,6 @@ TEST_F(Tables, ThatAreDamagedAreRefusedOrReadAsTables) {
       }
     }
   }
-}
-
-struct Pair {
-  std::string name;
-  double value = 0.0;
-  std::size_t count = 0;
-  bool flag = false;
-};
-
-TEST_F(Tables, TakeRowsFromFieldsAndGiveThemBack) {
-  const Fields<Pair> fields("pairs", {member_field<&Pair::name, Pair>({.name = "name", .key = true}),
-                                      member_field<&Pair::value, Pair>({.name = "value", .unit = "length"}),
-                                      member_field<&Pair::count, Pair>({.name = "count"}),
-                                      member_field<&Pair::flag, Pair>({.name = "flag"})});
-  const Pair given{"a,b", 0.1, 7, true};
-  Table table(fields.kind(), {}, fields.columns());
-  fields.append(given, table);
-  std::string line;
-  fields.append_csv(given, line);
-  EXPECT_EQ(line, "\"a,b\",0.1,7,yes\n");
-  EXPECT_EQ(csv_text(table), csv_head("pairs", {}, fields.columns()) + line);
-  Pair from_table, from_line;
-  EXPECT_EQ(fields.read(table, 0, from_table), std::nullopt);
-  EXPECT_TRUE(fields.read_csv(std::string_view(line).substr(0, line.size() - 1), from_line));
-  for (const Pair& read_back : {from_table, from_line}) {
-    EXPECT_EQ(read_back.name, given.name);
-    EXPECT_EQ(read_back.value, given.value);
-    EXPECT_EQ(read_back.count, given.count);
-    EXPECT_EQ(read_back.flag, given.flag);
-  }
-  EXPECT_FALSE(fields.read_csv("a,0.1,7", from_line));
-  EXPECT_FALSE(fields.read_csv("a,0.1,-7,yes", from_line));
-  const Table of_texts(fields.kind(), {}, {{.name = "value", .type = Type::kText}});
-  Table other = of_texts;
-  other.append(std::vector<Cell>{std::string_view("0.1")});
-  EXPECT_EQ(fields.read(other, 0, from_table), "value") << "a column of another type";
-  write(table, path("t.csv"));
-  RowReader<Pair> reader(path("t.csv"), fields, "give pairs");
-  Pair row;
-  EXPECT_TRUE(reader.next(row));
-  EXPECT_EQ(row.name, given.name);
-  EXPECT_FALSE(reader.next(row));
-  EXPECT_THROW(RowReader<Pair>(path("t.csv"), Fields<Pair>("others", {}), "give others"), InputError);
 }
 
 }  // namespace

@@ -1,19 +1,17 @@
 // Names of any bytes in every language that they are written in: every byte, every character, and bytes that are not
 // UTF-8.
-#include <gtest/gtest.h>
-
-#include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <string>
-#include <vector>
 
-#include "support/program.h"
+#include "support/random_scenes.h"
+#include "support/shapes.h"
+#include "support/test.h"
 #include "text/csv_lines.h"
 #include "text/encoding.h"
 #include "text/escape.h"
 #include "text/json_document.h"
+#include "text/number_text.h"
+#include "text/phrases.h"
 
 namespace exactff::text {
 namespace {
@@ -131,16 +129,10 @@ TEST(EveryLanguage, LetsNothingAwkwardThrough) {
   }
 }
 
-TEST(Html, MarksAreNoMarks) {
-  EXPECT_EQ(html("<a href=\"x\">&\n\t\x1B</a>\xE4"), "&lt;a href=&quot;x&quot;&gt;&amp;\n\t\\x1b&lt;/a&gt;\\xe4");
-}
-
 TEST(GitHub, NothingEndsAMessageOrAProperty) {
   EXPECT_EQ(github_message("50 %\nnext: a,b\r"), "50 %25%0Anext: a,b\\x0d");
   EXPECT_EQ(github_property("a:b,c%"), "a%3Ab%2Cc%25");
 }
-
-TEST(Gnuplot, NothingEndsAString) { EXPECT_EQ(gnuplot_string("it's\nso\x07"), "'it''s so\\x07'"); }
 
 TEST(Json, ReadsBackEveryCharacterAndShowsBytesOfNone) {
   for (const std::string& text : awkward()) {
@@ -176,12 +168,6 @@ TEST(Encoding, Utf8StaysAndAnythingElseIsTakenForWindows1252) {
   }
 }
 
-TEST(Encoding, KnowsUtf8) {
-  EXPECT_TRUE(is_utf8(""));
-  EXPECT_TRUE(is_utf8("plain \u00FC \U0001F600"));
-  for (const Broken& one : broken()) EXPECT_FALSE(is_utf8("a" + one.bytes)) << one.shown;
-}
-
 TEST(Csv, ReadsBackEveryTextButLineBreaks) {
   for (const std::string& text : awkward()) {
     if (text.find_first_of("\r\n") == std::string::npos) expect_reads_back(text);
@@ -196,11 +182,53 @@ TEST(ShellWord, IsReadBackByBash) {
   std::string all;
   for (int byte = 1; byte < 256; ++byte) all += static_cast<char>(byte);
   for (const std::string& text : {all, std::string("it's \\ plain"), std::string("it's\t\\\x1B"), std::string()}) {
-    const auto run = validation::run_program("/bin/bash", {"-c", "printf %s " + shell_word(text)});
+    const auto run = run_program("/bin/bash", {"-c", "printf %s " + shell_word(text)});
     EXPECT_EQ(run.output, text);
   }
   EXPECT_EQ(shell_word("data/room.obj"), "data/room.obj");
   EXPECT_EQ(shell_word("two words"), "'two words'");
+}
+
+TEST(Interval, IsRoundedOutwardToAFractionOfItsWidth) {
+  EXPECT_EQ(interval(0.8123, 1.0), "[0.812, 1]");
+  EXPECT_EQ(interval(0.0, 13.99), "[0, 14]");
+  EXPECT_EQ(interval(1.01773, 1.017736), "[1.01773, 1.017736]");
+  EXPECT_EQ(interval(-0.5, 216.7), "[-0.5, 217]");
+  EXPECT_EQ(interval(-7.33e-9, 3.218e-9), "[-7.4·10⁻⁹, 3.3·10⁻⁹]");
+  EXPECT_EQ(interval(0.0, std::numeric_limits<double>::max()), "[0, 1.7976931348623157·10³⁰⁸]");
+  EXPECT_EQ(interval(0.0, std::numeric_limits<double>::denorm_min()), "[0, 5·10⁻³²⁴]");
+}
+
+double parsed(std::string text) {
+  const std::size_t power = text.find("·10");
+  if (power == std::string::npos) return parse_number(text).value;
+  std::string exponent;
+  for (std::size_t i = power + std::string("·10").size(); i < text.size();) {
+    for (int digit = -1; digit < 10; ++digit) {
+      const std::string shown = digit < 0 ? "⁻" : superscript(digit);
+      if (text.compare(i, shown.size(), shown) != 0) continue;
+      exponent += digit < 0 ? "-" : std::to_string(digit);
+      i += shown.size();
+      break;
+    }
+  }
+  return parse_number(text.substr(0, power) + 'e' + exponent).value;
+}
+
+TEST(Interval, HoldsTheBoundsThatItShows) {
+  for (std::uint64_t s = 0; s < validation::scaled_count(3000); ++s) {
+    Random random(validation::seed_of(s));
+    const double scale = std::pow(10.0, random.integer(-300, 300)), width = std::pow(0.1, random.integer(0, 16));
+    const double lower = scale * random.between(-1, 1), upper = lower + scale * width * random.unit();
+    const std::string shown = interval(lower, upper);
+    if (shown.front() != '[') continue;
+    const std::size_t comma = shown.find(", ");
+    const double low = parsed(shown.substr(1, comma - 1)),
+                 high = parsed(shown.substr(comma + 2, shown.size() - comma - 3));
+    EXPECT_LE(low, lower) << shown << ' ' << s;
+    EXPECT_GE(high, upper) << shown << ' ' << s;
+    EXPECT_LE((lower - low) + (high - upper), 0.021 * (upper - lower)) << shown << ' ' << s;
+  }
 }
 
 }  // namespace

@@ -2,17 +2,11 @@
 // at once from the first moment, before anything that they build on demand exists. The results must equal those of one
 // thread.
 // validation/thread_sanitizer.sh looks for races.
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <chrono>
-#include <cstddef>
-#include <cstdint>
 #include <latch>
-#include <optional>
 #include <stdexcept>
 #include <thread>
-#include <vector>
 
 #include "exactff/adaptive.h"
 #include "exactff/exact.h"
@@ -21,60 +15,13 @@
 #include "generate/families.h"
 #include "scene/closed_surfaces.h"
 #include "scene/scene.h"
+#include "support/test.h"
 #include "unit/rivals/methods_support.h"
 
 namespace exactff {
 namespace {
 
 constexpr int kThreads = 4;
-
-TEST(WorkerPool, KnowsTheStepThatBeganFirst) {
-  std::latch first_began(1), both_began(2), may_end(1);
-  std::atomic<int> started = 0;
-  files::WorkerPool pool(2, {}, [&](files::WorkerPool::Worker& worker) {
-    const bool is_first = started++ == 0;
-    if (!is_first) first_began.wait();
-    worker.begin(is_first ? 7 : 8);
-    if (is_first) first_began.count_down();
-    both_began.count_down();
-    may_end.wait();
-  });
-  both_began.wait();
-  EXPECT_EQ(pool.slow_step(std::chrono::milliseconds(0)), 7U);
-  EXPECT_EQ(pool.slow_step(std::chrono::hours(1)), std::nullopt);
-  may_end.count_down();
-  EXPECT_TRUE(pool.wait_for(std::chrono::hours(1)));
-  EXPECT_EQ(pool.slow_step(std::chrono::milliseconds(0)), std::nullopt);
-}
-
-TEST(WorkerPool, EndsAllThreadsAtTheFirstException) {
-  std::atomic<int> started = 0;
-  files::WorkerPool pool(3, {}, [&](files::WorkerPool::Worker& worker) {
-    if (started++ == 1) throw std::out_of_range("the first");
-    while (!worker.must_stop()) std::this_thread::yield();
-  });
-  EXPECT_TRUE(pool.wait_for(std::chrono::hours(1)));
-  EXPECT_THROW(pool.rethrow(), std::out_of_range);
-}
-
-TEST(Loops, TakeEveryStepOnceWithTheMemoryOfTheirThread) {
-  for (const std::size_t block : {1U, 7U}) {
-    for (const int threads : {1, 3}) {
-      std::vector<int> taken(100);
-      std::atomic<std::size_t> bodies = 0;
-      std::size_t done = 0;
-      const Hooks hooks{[&](const Progress& at) { done = at.done; }, {}};
-      files::parallel_for({.count = taken.size(), .threads = threads, .stage = "steps", .largest_block = block}, hooks,
-                          [&] {
-                            ++bodies;
-                            return [&](std::size_t i) { ++taken[i]; };
-                          });
-      EXPECT_EQ(taken, std::vector<int>(100, 1));
-      EXPECT_EQ(bodies, static_cast<std::size_t>(threads));
-      EXPECT_EQ(done, taken.size());
-    }
-  }
-}
 
 // All threads start at once. Returns the results by thread.
 template <class Work>

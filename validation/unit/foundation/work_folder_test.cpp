@@ -1,18 +1,13 @@
 // Hidden folders of killed processes, of living ones, of older versions and of other programs.
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <fstream>
-#include <set>
-#include <string>
 
 #include "exactff/error.h"
 #include "files/file.h"
 #include "page/output_folder.h"
-#include "support/folder.h"
-#include "support/program.h"
+#include "support/test.h"
 
 namespace exactff::study {
 namespace {
@@ -21,7 +16,7 @@ namespace fs = std::filesystem;
 
 class WorkFolders : public testing::Test {
  protected:
-  std::set<std::string> names() const { return validation::names_in(directory_.path()); }
+  std::set<std::string> names() const { return names_in(directory_.path()); }
   void put(const fs::path& file, const std::string& text = "x") const {
     fs::create_directories(file.parent_path());
     std::ofstream(file) << text;
@@ -39,7 +34,7 @@ class WorkFolders : public testing::Test {
     EXPECT_TRUE(WIFSIGNALED(status));
   }
 
-  const validation::TemporaryDirectory directory_;
+  const TemporaryDirectory directory_;
   const fs::path target_ = directory_.path() / "result";
 };
 
@@ -58,14 +53,6 @@ TEST_F(WorkFolders, OfALivingProcessAreNotTouched) {
   { const files::WorkFolder other(target_); }
   EXPECT_EQ(names(), std::set<std::string>{living.path().filename().string()});
   EXPECT_TRUE(fs::exists(living.path() / "half.csv"));
-}
-
-TEST_F(WorkFolders, OfAnotherTargetStay) {
-  be_killed_in_the_middle();
-  const std::set<std::string> before = names();
-  { const files::WorkFolder other(directory_.path() / "resul"); }
-  { const files::WorkFolder other(directory_.path() / "result2"); }
-  EXPECT_EQ(names(), before);
 }
 
 TEST_F(WorkFolders, WhatWasNeverPutThereByUsStays) {
@@ -111,35 +98,7 @@ TEST_F(WorkFolders, WholeFilesTakeTheirTurns) {
     EXPECT_THROW(files::WholeFile second(file), InputError);
     first.commit();
   }
-  EXPECT_EQ(validation::text_of(file), "first");
-  EXPECT_EQ(names(), std::set<std::string>{"a.svg"});
-}
-
-// Two processes write the same folder repeatedly. A reader always finds one complete result, and no process is refused.
-TEST_F(WorkFolders, WholeFilesOfTwoProcessesAreAlwaysWhole) {
-  const fs::path file = directory_.path() / "a.svg";
-  const auto write = [&file](char letter) {
-    for (int i = 0; i < 8; ++i) {
-      files::WholeFile whole(file, {}, files::WholeFile::WhenBusy::kWait);
-      whole.append(std::string(10'000, letter));
-      whole.commit();
-    }
-  };
-  const pid_t child = ::fork();
-  if (child == 0) {
-    try {
-      write('b');
-    } catch (...) {
-      ::_exit(1);
-    }
-    ::_exit(0);
-  }
-  write('a');
-  const std::string text = validation::text_of(file);
-  EXPECT_TRUE(text == std::string(10'000, 'a') || text == std::string(10'000, 'b')) << text.size();
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  EXPECT_EQ(status, 0);
+  EXPECT_EQ(text_of(file), "first");
   EXPECT_EQ(names(), std::set<std::string>{"a.svg"});
 }
 

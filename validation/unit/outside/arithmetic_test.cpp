@@ -2,16 +2,7 @@
 // thread, and do not change them. The test calls every public function that computes, in every rounding mode, with
 // denormal numbers flushed to zero or read as zero, and with floating-point traps. EXACTFF_TEST_SCALE multiplies the
 // number of scenes.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
 #include <cfenv>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <sstream>
-#include <tuple>
 #ifdef __SSE2__
 #include <xmmintrin.h>
 #endif
@@ -30,19 +21,15 @@
 #include "exactff/truth.h"
 #include "exactff/view.h"
 #include "exactff/view_factors.h"
-#include "generate/plain_scene.h"
-#include "generate/random.h"
 #include "report/report.h"
 #include "stress/stress.h"
-#include "support/program.h"
 #include "support/random_scenes.h"
+#include "support/shapes.h"
+#include "support/test.h"
 #include "unit/reports/study_support.h"
 
 namespace exactff {
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 struct Setting {
   const char* name;
@@ -225,7 +212,7 @@ void expect_the_same(const Call& call) {
 }
 
 TEST(ThreadsArithmetic, ChangesNoSceneAndNoExactValue) {
-  const validation::TemporaryDirectory directory;
+  const TemporaryDirectory directory;
   const auto receivers =
       directory.write("receivers.csv", "id,x,y,z,nx,ny,nz\na,0.7,0.3,1e-310,0.1,0.2,0.3\nb,-0,0.1,2,0,0,1\n");
   for (std::uint64_t i = 0; i < validation::scaled_count(50); ++i) {
@@ -258,7 +245,7 @@ TEST(ThreadsArithmetic, ChangesNothingThatASceneSaysOfItself) {
 }
 
 TEST(ThreadsArithmetic, ChangesNoViewFactor) {
-  const Scene room = validation::small_room(true);
+  const Scene room = small_room(true);
   expect_the_same([&] {
     Record record;
     for (const Patch& from : room.patches()) add_view_factor(room, room.select(from.name), room.select("lamp"), record);
@@ -267,7 +254,7 @@ TEST(ThreadsArithmetic, ChangesNoViewFactor) {
 }
 
 TEST(ThreadsArithmetic, ChangesNoEnclosure) {
-  const Scene scene = validation::small_room(true);
+  const Scene scene = small_room(true);
   const ExactSource lamp(scene, scene.select("lamp"));
   const Receiver receiver{.point = {0.25, 0.1, 0.0}, .normal = {0, 0, 0x1p-1060}, .on = {}, .id = {}};
   const FormFactor f = exact_form_factor(scene, receiver, lamp);
@@ -297,9 +284,8 @@ TEST(ThreadsArithmetic, ChangesNoMethodsValue) {
   PlainScene plain = validation::generic_scene(random);
   const Scene scene = generate::build(plain);
   const Receiver receiver = generate::receiver_of(plain);
-  std::vector<std::string> texts = {"adaptive:variant=literal", "hemicube:rotation=30,resolution=20",
-                                    "nettle:variant=literal", "area-sampling:pattern=r2",
-                                    "wallace:pattern=jittered,splits=3"};
+  Words texts = {"adaptive:variant=literal", "hemicube:rotation=30,resolution=20", "nettle:variant=literal",
+                 "area-sampling:pattern=r2", "wallace:pattern=jittered,splits=3"};
   for (const methods::Method* method : methods::all_methods()) texts.push_back(method->name);
   for (const std::string& text : texts) {
     SCOPED_TRACE(text);
@@ -322,22 +308,9 @@ TEST(ThreadsArithmetic, ChangesNoMethodsValue) {
   });
 }
 
-TEST(ThreadsArithmetic, ChangesNoModel) {
-  for (const models::Model* model : models::all_models()) {
-    if (model->name == "forest") continue;  // takes long, and computes like the others
-    const std::string text = model->name == "teapot" ? "teapot:segments=2" : model->name;
-    SCOPED_TRACE(text);
-    expect_the_same(joint_settings(), [&] {
-      Record record;
-      record.add(models::make_scene(text));
-      return record.text() + models::make_obj(text, "a.mtl") + models::make_mtl(text) + models::description(*model);
-    });
-  }
-}
-
 TEST(ThreadsArithmetic, ChangesNoTruthFile) {
-  const validation::TemporaryDirectory directory;
-  const Scene scene = validation::small_room(true);
+  const TemporaryDirectory directory;
+  const Scene scene = small_room(true);
   const auto file = [&](const char* name) { return directory.path() / name; };
   const std::filesystem::path whole = file("truth.csv"), merged = file("merged.csv");
   const std::vector<std::filesystem::path> parts = {file("1.csv"), file("2.csv")};
@@ -358,13 +331,13 @@ TEST(ThreadsArithmetic, ChangesNoTruthFile) {
     truth::merge(parts, merged, jobs::Existing::kReplace);
     return std::string();
   };
-  expect_the_same(joint_settings(), write, [&] { return validation::text_of(whole) + validation::text_of(merged); });
+  expect_the_same(joint_settings(), write, [&] { return text_of(whole) + text_of(merged); });
 }
 
 // Points are read from an image, placed on their faces, valued, and the values are written and compared.
 TEST(ThreadsArithmetic, ChangesNoImage) {
-  const validation::TemporaryDirectory directory;
-  const Scene scene = validation::small_room(true);
+  const TemporaryDirectory directory;
+  const Scene scene = small_room(true);
   exr::Image image{{0, 0, 2, 1}, {0, 0, 2, 1}, {}, {}};
   for (const auto& [name, value] :
        {std::pair{"P.X", 0.3F}, {"P.Y", 0.1F}, {"P.Z", 1e-40F}, {"N.X", 1e-42F}, {"N.Y", 0.0F}, {"N.Z", 0.7F}}) {
@@ -387,11 +360,11 @@ TEST(ThreadsArithmetic, ChangesNoImage) {
     const check::Report report = check::judge(images.truth, images.values, {.relative_mse = 1.0});
     return exr::exr_of(image) + check::json_text(report);
   };
-  expect_the_same(joint_settings(), write, [&] { return validation::text_of(table) + validation::text_of(values); });
+  expect_the_same(joint_settings(), write, [&] { return text_of(table) + text_of(values); });
 }
 
 TEST(ThreadsArithmetic, ChangesNoCheck) {
-  const validation::TemporaryDirectory directory;
+  const TemporaryDirectory directory;
   const auto truth_file = directory.write(
       "truth.csv",
       "receiver,x,y,z,nx,ny,nz,exact,largest_rho_b\na,0.1,1e-310,0,0,0,1,0.3,2\nb,0.7,0,0,0,0,1,1e-320,1\n");
@@ -417,46 +390,27 @@ TEST(ThreadsArithmetic, ChangesNoCheck) {
   });
 }
 
-// All files of studies except times, without gnuplot, which computes in another process.
-std::string value_files(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string name = entry.path().filename();
-    if (name.ends_with(".csv") && name.find("timings") == std::string::npos) files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  std::string text;
-  for (const auto& file : files) text += file.filename().string() + '\n' + validation::text_of(file);
-  return text;
-}
-
-TEST(ThreadsArithmetic, ChangesNoStudy) {
-  const validation::TemporaryDirectory directory;
-  const validation::EnvironmentVariable nowhere("PATH", "");
-  const Scene scene = validation::small_room(true);
-  const study::Request request = validation::request_with_methods(scene, 2);
-  const std::filesystem::path folder = directory.path() / "study";
+TEST(ThreadsArithmetic, ChangesNoStudyAndNoStressReport) {
+  const TemporaryDirectory directory;
+  const EnvironmentVariable nowhere("PATH", "");
+  const Scene scene = small_room(true);
+  const study::Request request = request_with_methods(scene, 2);
+  const std::filesystem::path study_folder = directory.path() / "study", stress_folder = directory.path() / "stress";
   const auto write = [&] {
     const study::Study study = study::run(request);
-    study::write_report(study, folder);
-    EXPECT_FALSE(report::headlines(study).empty());  // these contain times
+    study::write_report(study, study_folder);
+    const stress::Report stress = stress::run({.families = {"approach-interior"}, .threads = 2, .command_line = {}});
+    stress::write(stress, stress_folder);
+    EXPECT_FALSE(report::headlines(study).empty() || stress::headlines(stress).empty());  // these contain times
     return std::string();
   };
-  expect_the_same(joint_settings(), write, [&] { return value_files(folder); });
-}
-
-TEST(ThreadsArithmetic, ChangesNoStressReport) {
-  const validation::TemporaryDirectory directory;
-  const validation::EnvironmentVariable nowhere("PATH", "");
-  const stress::Request request{.families = {"approach-interior"}, .threads = 2, .command_line = {}};
-  const std::filesystem::path folder = directory.path() / "stress";
-  const auto write = [&] {
-    const stress::Report report = stress::run(request);
-    stress::write(report, folder);
-    EXPECT_FALSE(stress::headlines(report).empty());
-    return std::string();
-  };
-  expect_the_same(joint_settings(), write, [&] { return value_files(folder); });
+  expect_the_same(joint_settings(), write, [&] {
+    std::string text = text_of(stress_folder / "values.csv");
+    for (const char* file : {"values.csv", "methods.csv", "exact.csv", "summary.csv", "profile.csv"}) {
+      text += text_of(study_folder / file);
+    }
+    return text;
+  });
 }
 
 }  // namespace

@@ -1,18 +1,9 @@
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
-#include <string>
 
-#include "support/holds.h"
-#include "support/program.h"
+#include "support/test.h"
 
 namespace exactff {
 namespace {
-
-using validation::holds;
-using validation::ProgramRun;
-using validation::run_program;
-using validation::TemporaryDirectory;
 
 // A floor, a lamp above it, a bent quadrilateral, a face without area and a bow tie.
 const std::string kBentRoom =
@@ -33,10 +24,7 @@ struct Room {
     (void)directory.write("room.mtl", kTwoMaterials);
     path = directory.write("room.obj", kBentRoom + more).string();
   }
-  ProgramRun info(std::vector<std::string> flags = {}) const {
-    flags.insert(flags.begin(), {"info", path});
-    return run_program(EXACTFF_PROGRAM, flags);
-  }
+  ProgramRun info(const Words& flags = {}) const { return run_exactff(joined({"info", path}, flags)); }
 };
 
 TEST(InfoCommand, ListsPatchesEmittersAndDoubtfulFaces) {
@@ -55,7 +43,7 @@ TEST(InfoCommand, ListsPatchesEmittersAndDoubtfulFaces) {
       "open edges: 8 (an odd number of faces uses them)\n",
       " --on floor --source lamp --grid 16x16 -o DIR",
   };
-  for (const char* line : lines) EXPECT_TRUE(holds(run.output, line)) << line << "\nin\n" << run.output;
+  for (const char* line : lines) EXPECT_HOLDS(run.output, line) << line << "\nin\n" << run.output;
 }
 
 TEST(InfoCommand, JsonRoundTrips) {
@@ -78,7 +66,67 @@ TEST(InfoCommand, BadFacesStopItUnlessTheyAreSkipped) {
   EXPECT_EQ(stopped.output, "");
   const ProgramRun skipped = room.info({"--skip-bad-faces"});
   EXPECT_EQ(skipped.exit_code, 0);
-  EXPECT_TRUE(holds(skipped.output, "unusable, left out: bow:1\n")) << skipped.output;
+  EXPECT_HOLDS(skipped.output, "unusable, left out: bow:1\n");
+}
+
+// --- What commands say where a scene or a receiver is probably not what was meant ---
+
+// A cube without a lamp, whose fronts all look outward, and the same with a lamp in it.
+const std::string kVertices =
+    "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 0 0 4\nv 4 0 4\nv 4 4 4\nv 0 4 4\nv 1 1 3\nv 1 2 3\nv 2 2 3\nv 2 1 3\n";
+const std::string kOutward =
+    "g floor\nf 4 3 2 1\ng ceiling\nf 5 6 7 8\ng south\nf 1 2 6 5\ng east\nf 2 3 7 6\ng north\nf 3 4 8 7\n"
+    "g west\nf 4 1 5 8\n";
+const std::string kLamp = "usemtl bright\ng lamp\nf 9 10 11 12\n";
+
+struct Advice : testing::Test {
+  TemporaryDirectory directory;
+  std::string empty_room = directory.write("empty.obj", kVertices + kOutward).string();
+  std::string room;
+
+  Advice() {
+    (void)directory.write("m.mtl", "newmtl bright\nKe 1 1 1\n");
+    room = directory.write("room.obj", "mtllib m.mtl\n" + kVertices + kOutward + kLamp).string();
+  }
+  [[nodiscard]] static ProgramRun run(const Words& arguments) { return run_exactff(arguments); }
+};
+
+TEST_F(Advice, OnFrontsIsGivenByEveryCommandAndObeyedIsSilent) {
+  const std::string flips = "floor,ceiling,south,east,north,west";
+  const std::string truth = (directory.path() / "truth.csv").string(), image = (directory.path() / "a.png").string();
+  for (const Words& command :
+       std::vector<Words>{{"matrix", room, "--accuracy", "1e-2"},
+                          {"radiosity", room, "--accuracy", "1e-2"},
+                          {"truth", room, "--on", "lamp", "--centres", "--source", "floor", "-o", truth, "--force"},
+                          {"render", room, "--size", "8x8", "-o", image, "--force"},
+                          {"point", room, "--at", "1.5", "1.5", "2", "--normal", "0", "0", "-1", "--source", "floor"},
+                          {"view", room, "--at", "1.5", "1.5", "2", "--normal", "0", "0", "-1"}}) {
+    const ProgramRun told = run(command);
+    EXPECT_HOLDS(told.error, "looks out of it: 'floor', 'ceiling'") << command.front() << '\n' << told.error;
+    EXPECT_HOLDS(told.error, "--flip " + flips) << command.front();
+    Words obeyed = command;
+    obeyed.insert(obeyed.end(), {"--flip", flips});
+    EXPECT_FALSE(holds(run(obeyed).error, "out of it")) << command.front();
+  }
+  EXPECT_HOLDS(run({"matrix", empty_room}).error, "--flip all");
+  EXPECT_EQ(run({"matrix", empty_room, "--flip", "all"}).error, "");
+}
+
+// Half a metre below the floor. A lamp is seen from the floor; from the ground outside of a room, nothing would be.
+TEST_F(Advice, OnReceiversThatSeeOnlyBacksIsTheirPlaceOnTheFace) {
+  const Words flips{"--flip", "floor,ceiling,south,east,north,west"};
+  const auto below = [&](Words command, const char* z) {
+    command.insert(command.end(), {"--at", "1", "1.5", z, "--normal", "0", "0", "1"});
+    command.insert(command.end(), flips.begin(), flips.end());
+    return run(command).error;
+  };
+  const std::string point = below({"point", room, "--source", "lamp"}, "-.5"), view = below({"view", room}, "-.5");
+  EXPECT_HOLDS(point,
+               "x lies 0.5 behind 'floor' and sees nothing but backs. On it, with --at 1 1.5 0 --on floor, "
+               "the form factor of 'lamp' is ");
+  EXPECT_HOLDS(view, "--on floor, it sees 6 patches instead of 0");
+  EXPECT_FALSE(holds(below({"view", room}, ".5"), "sees nothing but backs"));
+  EXPECT_FALSE(holds(below({"view", room}, "5"), "sees nothing but backs")) << "above the ceiling";
 }
 
 }  // namespace

@@ -1,22 +1,16 @@
 // What the program says to flags that are misspelt or have the wrong number of numbers.
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "cli/commands.h"
-#include "support/complaint.h"
-#include "support/program.h"
+#include "support/test.h"
 
 namespace exactff {
 namespace {
 
 struct MisusedFlags : testing::Test {
-  const validation::TemporaryDirectory directory;
+  const TemporaryDirectory directory;
   const std::string scene = EXACTFF_DATA_DIR "/scenes/cornell_box.obj";
 
-  static void expect_refused(const std::vector<std::string>& words, const std::string& message) {
-    const validation::ProgramRun run = validation::run_exactff(words);
+  static void expect_refused(const Words& words, const std::string& message) {
+    const ProgramRun run = run_exactff(words);
     EXPECT_EQ(run.exit_code, 2);
     EXPECT_EQ(run.error, "exactff: " + message + '\n');
   }
@@ -44,9 +38,9 @@ TEST_F(MisusedFlags, AnotherNumberOfNumbersIsToldWithTheForm) {
 }
 
 TEST_F(MisusedFlags, TheNearestFlagIsSuggestedAndWordsKeepTheirOrder) {
-  const std::vector<std::string> point = {"point", scene, "--at", "200", "0", "400", "--normal", "0", "1", "0"};
-  const auto with = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words = point;
+  const Words point = {"point", scene, "--at", "200", "0", "400", "--normal", "0", "1", "0"};
+  const auto with = [&](const Words& more) {
+    Words words = point;
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };
@@ -66,12 +60,6 @@ TEST_F(MisusedFlags, TheNearestFlagIsSuggestedAndWordsKeepTheirOrder) {
                  "exactff point has no flag --att (the command line has '--att 200 0 400'); did you mean --at?");
 }
 
-TEST_F(MisusedFlags, FlagsThatCannotBeGivenTogetherAreNamed) {
-  const auto run = validation::run_exactff({"matrix", scene, "--accuracy", "1e-2", "--matrix", scene});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.error.find(" cannot be given with --"), std::string::npos) << run.error;
-}
-
 TEST_F(MisusedFlags, AFlagIsNoNameNorFileOfAnother) {
   expect_refused({"radiosity", scene, "--two-sided", "--accuracy", "1e-2"},
                  "--two-sided needs a name (--accuracy follows, which begins like a flag); write --two-sided NAME...");
@@ -81,8 +69,7 @@ TEST_F(MisusedFlags, AFlagIsNoNameNorFileOfAnother) {
   expect_refused({"point", scene, "--source", "--lamp"},
                  "--source needs a name (--lamp follows, which begins like a flag); write --source NAME[:K]..., or "
                  "--source=--lamp if that is meant");
-  const auto run = validation::run_program(
-      EXACTFF_PROGRAM,
+  const auto run = run_exactff(
       {"info", directory.write("s.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\ng --lamp\nf 1 2 3\n"), "--flip=--lamp"});
   EXPECT_EQ(run.exit_code, 0);
 }
@@ -94,20 +81,19 @@ TEST_F(MisusedFlags, NoFlagIsTakenForAValue) {
   for (const cli::CommandTable& command : cli::program_table(app).commands) {
     for (const cli::OptionRow& option : command.options) {
       if (option.value.empty() || option.least_values > 1) continue;
-      const std::vector<std::string> words = {command.name, option.names.back(), "-h"};
-      const std::string said = validation::complaint([&] { cli::refuse_flags_without_values(app, words); });
+      const Words words = {command.name, option.names.back(), "-h"};
+      const std::string said = complaint([&] { cli::refuse_flags_without_values(app, words); });
       EXPECT_TRUE(said.starts_with(option.names.back() + " needs a ")) << said;
     }
   }
 }
 
 TEST_F(MisusedFlags, NumbersMayBeNegativeOrWithoutADigitBeforeThePoint) {
-  using Words = std::vector<std::string>;
   const std::string image = directory.path() / "a.png";
   for (const Words& words : {Words{"view", scene, "--at", "-1", "-.5", "-1e-3", "--normal", "-0", "1", "+0", "--plain"},
                              Words{"render", scene, "--eye", "-.5", "-1", "-800", "--look", "0", "-.5", "0", "--size",
                                    "2x2", "-o", image}}) {
-    EXPECT_EQ(validation::run_program(EXACTFF_PROGRAM, words).exit_code, 0);
+    EXPECT_EQ(run_exactff(words).exit_code, 0);
   }
 }
 

@@ -1,18 +1,7 @@
 // Outputs replace nothing that a command reads and no other output, and have no name of another format. The options are
 // those of the program's own tables, so that a new one is tried at once.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <map>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "cli/commands.h"
-#include "support/folder.h"
-#include "support/program.h"
+#include "support/test.h"
 
 namespace exactff {
 namespace {
@@ -24,8 +13,6 @@ using cli::OptionRow;
 using flags::Beside;
 using flags::FileMark;
 using Use = FileMark::Use;
-using validation::text_of;
-using Words = std::vector<std::string>;
 
 std::vector<CommandTable> command_tables() {
   CLI::App app("", "exactff");
@@ -65,7 +52,7 @@ class Outputs : public testing::Test {
 
   // Returns the exit code; standard error is in error_.
   int run(const Words& words) {
-    const validation::RunningProgram running(EXACTFF_PROGRAM, words, path("stderr"));
+    const RunningProgram running(EXACTFF_PROGRAM, words, path("stderr"));
     const int code = running.wait();
     error_ = running.error();
     return code;
@@ -113,9 +100,7 @@ class Outputs : public testing::Test {
     ++runs_;
     EXPECT_EQ(run(words), 2) << testing::PrintToString(words);
     for (const std::string& word : told) {
-      EXPECT_NE(error_.find(word), std::string::npos) << word << "\n"
-                                                      << testing::PrintToString(words) << '\n'
-                                                      << error_;
+      EXPECT_HOLDS(error_, word) << word << "\n" << testing::PrintToString(words) << '\n' << error_;
     }
   }
   // With and without --force.
@@ -129,7 +114,7 @@ class Outputs : public testing::Test {
 
   static constexpr const char* kScene =
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\nv 1 0 1\ng floor\nf 1 2 3\ng lid\nf 4 5 6\n";
-  const validation::TemporaryDirectory directory_{validation::memory_folder()};
+  const TemporaryDirectory directory_{memory_folder()};
   std::string error_;
   int runs_ = 0;
 };
@@ -157,7 +142,7 @@ TEST_F(Outputs, ReplaceNothingThatIsReadWhateverFlagsSay) {
         const bool folder = output->file->use == Use::kFolder;
         fs::create_directory(path("folder"));
         const std::string file = path((folder ? "folder/in" : "in") + extension_of(*output));
-        validation::write_text(file, "precious");
+        write_text(file, "precious");
         const std::string name = folder ? path("folder") : alias(file, static_cast<Name>(turn++ % 4));
         expect_kept(command, *output, line(command, {{input, file}, {output, name}}), file,
                     {folder ? file : name, '(' + input->names.front() + ')', '(' + output->names.front() + ')'});
@@ -193,9 +178,9 @@ TEST_F(Outputs, ReplaceNoFileOfTheScene) {
       if (output->file->beside == Beside::kScene) libraries.emplace_back(path("m_scene.vtp"), name);
       if (output->file->beside == Beside::kViewFactors) libraries.emplace_back(name + ".factors", name);
       for (const auto& [library, written] : libraries) {
-        validation::write_text(library, "# exactff \nnewmtl grey\nKd .5 .5 .5\n");
+        write_text(library, "# exactff \nnewmtl grey\nKd .5 .5 .5\n");
         const std::string relative = fs::relative(library, directory_.path()).string();
-        validation::write_text(path("s.obj"), "mtllib " + relative + "\nusemtl grey\n" + kScene);
+        write_text(path("s.obj"), "mtllib " + relative + "\nusemtl grey\n" + kScene);
         std::map<const OptionRow*, std::string> values = {{scene, path("s.obj")}, {output, written}};
         Words words = {command.name};
         for (const OptionRow* row : rows_of(command)) {
@@ -218,18 +203,6 @@ TEST_F(Outputs, ReplaceNoFileOfTheScene) {
   EXPECT_GT(runs_, 30);
 }
 
-TEST_F(Outputs, ReplaceNoFileOfAStudy) {
-  fs::create_directory(path("folder"));
-  const std::string receivers = "# exactff \nid,x,y,z,nx,ny,nz\na,.2,.2,0,0,0,1\n";
-  validation::write_text(path("folder/p.csv"), receivers);
-  validation::write_text(path("s.obj"), kScene);
-  validation::write_text(path("s.study"), "scene s.obj --receivers folder/p.csv --source lid --no-methods\n");
-  for (const char* force : {"--abridged", "--force"}) {
-    expect_refused({"compare", path("s.study"), "-o", path("folder"), force}, {"p.csv: is read (with SCENE)"});
-  }
-  EXPECT_EQ(text_of(path("folder/p.csv")), receivers);
-}
-
 TEST_F(Outputs, OfOneCommandAreDifferentFiles) {
   for (const CommandTable& command : command_tables()) {
     for (const OptionRow* a : rows_of(command)) {
@@ -244,12 +217,12 @@ TEST_F(Outputs, OfOneCommandAreDifferentFiles) {
     }
   }
   EXPECT_GT(runs_, 30);
-  EXPECT_EQ(validation::names_in(directory_.path()), std::set<std::string>{"stderr"});
+  EXPECT_EQ(names_in(directory_.path()), std::set<std::string>{"stderr"});
 }
 
 TEST_F(Outputs, ReplaceNoFileByWhatIsKeptBesideThem) {
   for (const std::string name : {"s.whole", "s.part", "s.factors", "s.factors.part", "s.again.part"}) {
-    validation::write_text(path(name), kScene);
+    write_text(path(name), kScene);
     EXPECT_EQ(run({"radiosity", path(name), "-o", path("s"), "--force"}), 2);  // nothing emits light, in any case
     EXPECT_EQ(error_.find("is read") != std::string::npos, name != "s.part") << error_;
     EXPECT_EQ(text_of(path(name)), kScene) << name;
@@ -274,24 +247,16 @@ TEST_F(Outputs, WithTheNameOfAnotherFormatAreRefused) {
   EXPECT_GT(runs_, 15);
 }
 
-TEST_F(Outputs, WithTheNameOfAnotherFormatTellTheFlagThatWritesIt) {
-  const std::string scene = directory_.write("s.obj", kScene);
-  const std::string points = directory_.write("p.csv", "id,x,y,z,nx,ny,nz\na,.2,.2,0,0,0,1\n");
-  const Words truth = {"truth", scene, "--receivers", points, "--source", "lid", "-o"};
-  const auto with = [](Words words, const std::string& file) {
-    words.push_back(file);
-    return words;
-  };
-  expect_refused({"matrix", scene, "-o", path("m.npz")},
-                 {"m.npz: is named as an archive of NumPy arrays, and -o writes CSV text (other programs go by the "
-                  "name); write --npz "});
-  expect_refused(with(truth, path("t.NPY")), {"write -o FILE.csv --npy "});
-  expect_refused(with(truth, path("t.exr")), {"write -o FILE.csv --exr "});
-  expect_refused({"radiosity", scene, "-o", path("r.vtp")}, {"write --vtk "});
-  expect_refused({"radiosity", scene, "-o", path("r.json")}, {"name a .csv file"});
-  expect_refused({"check", points, points, "--json", path("c.xml")}, {"write --junit "});
-  for (const char* name : {"t", "t.csv", "t.txt", "t.data", "t.1"})
-    EXPECT_EQ(run(with(truth, path(name))), 0) << error_;
+TEST_F(Outputs, ReplaceNoFileOfAStudy) {
+  fs::create_directory(path("folder"));
+  const std::string receivers = "# exactff \nid,x,y,z,nx,ny,nz\na,.2,.2,0,0,0,1\n";
+  write_text(path("folder/p.csv"), receivers);
+  write_text(path("s.obj"), kScene);
+  write_text(path("s.study"), "scene s.obj --receivers folder/p.csv --source lid --no-methods\n");
+  for (const char* force : {"--abridged", "--force"}) {
+    expect_refused({"compare", path("s.study"), "-o", path("folder"), force}, {"p.csv: is read (with SCENE)"});
+  }
+  EXPECT_EQ(text_of(path("folder/p.csv")), receivers);
 }
 
 }  // namespace

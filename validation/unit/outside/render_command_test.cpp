@@ -1,34 +1,24 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <filesystem>
 #include <thread>
-#include <vector>
 
 #include "files/numpy.h"
-#include "support/program.h"
+#include "support/test.h"
 
 namespace exactff {
 namespace {
 
 namespace fs = std::filesystem;
-using validation::RunningProgram;
-using validation::TemporaryDirectory;
-using validation::text_of;
 
 class RenderCommand : public testing::Test {
  protected:
-  using Words = std::vector<std::string>;
-
   [[nodiscard]] Words words(const Words& more) const {
     Words all = {"render", room_};
     all.insert(all.end(), more.begin(), more.end());
     if (std::ranges::find(more, "--size") == more.end()) all.insert(all.end(), {"--size", "9x7"});
     return all;
   }
-  [[nodiscard]] validation::ProgramRun render(const Words& more) const { return validation::run_exactff(words(more)); }
+  [[nodiscard]] ProgramRun render(const Words& more) const { return run_exactff(words(more)); }
   [[nodiscard]] std::string path(const std::string& name) const { return (directory_.path() / name).string(); }
   [[nodiscard]] std::size_t files() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(directory_.path()), fs::directory_iterator()));
@@ -41,34 +31,33 @@ class RenderCommand : public testing::Test {
 TEST_F(RenderCommand, WritesEveryFile) {
   EXPECT_EQ(render({"-o", path("a.png"), "--double", path("a.npy"), "--bounds", path("b.npy")}).exit_code, 0);
   EXPECT_TRUE(text_of(path("a.png")).starts_with("\x89PNG"));
-  EXPECT_NE(text_of(path("a.png")).find("cornell_box.obj"), std::string::npos);
-  EXPECT_NE(text_of(path("a.npy")).find("(7, 9, 3)"), std::string::npos);
-  EXPECT_NE(text_of(path("b.npy")).find("(2, 7, 9, 3)"), std::string::npos);
+  EXPECT_HOLDS(text_of(path("a.png")), "cornell_box.obj");
+  EXPECT_HOLDS(text_of(path("a.npy")), "(7, 9, 3)");
+  EXPECT_HOLDS(text_of(path("b.npy")), "(2, 7, 9, 3)");
   EXPECT_EQ(render({"-o", path("a.exr"), "--layers"}).exit_code, 0);
   EXPECT_TRUE(text_of(path("a.exr")).starts_with("\x76\x2f\x31\x01"));
-  EXPECT_NE(text_of(path("a.exr")).find("id.face"), std::string::npos);
+  EXPECT_HOLDS(text_of(path("a.exr")), "id.face");
   EXPECT_EQ(files(), 4U);  // nothing else is left
 }
 
 TEST_F(RenderCommand, TheGradientHasItsComponentsInChannels) {
   EXPECT_EQ(render({"-o", path("a.exr"), "--quantity", "gradient", "--spp", "2"}).exit_code, 0);
   for (const char* channel : {"gradient.X", "gradient.Y", "gradient.Z", "kink"}) {
-    EXPECT_NE(text_of(path("a.exr")).find(channel), std::string::npos) << channel;
+    EXPECT_HOLDS(text_of(path("a.exr")), channel) << channel;
   }
   EXPECT_EQ(render({"-o", path("b.exr"), "--quantity", "gradient", "--bounds", path("b.npy")}).exit_code, 2);
   EXPECT_EQ(render({"-o", path("b.exr"), "--quantity", "gradient", "--method", "nettle"}).exit_code, 2);
 }
 
 TEST_F(RenderCommand, ComparesMethods) {
-  const auto run = validation::run_program(
-      EXACTFF_PROGRAM, words({"-o", path("d.png"), "--against", "hemicube:resolution=8", "--strip"}));
+  const auto run = run_exactff(words({"-o", path("d.png"), "--against", "hemicube:resolution=8", "--strip"}));
   EXPECT_EQ(run.exit_code, 0);
-  EXPECT_NE(run.output.find("errors: RMS "), std::string::npos) << run.output;
-  EXPECT_NE(run.output.find("wrong by over 10 %"), std::string::npos) << run.output;
+  EXPECT_HOLDS(run.output, "errors: RMS ");
+  EXPECT_HOLDS(run.output, "wrong by over 10 %");
   EXPECT_EQ(render({"-o", path("again.png"), "--against", "hemicube:resolution=8", "--strip"}).exit_code, 0);
   EXPECT_EQ(text_of(path("again.png")), text_of(path("d.png")));  // no times
   EXPECT_EQ(render({"-o", path("e.exr"), "--against", "exact"}).exit_code, 0);
-  EXPECT_NE(text_of(path("e.exr")).find("minus exact"), std::string::npos);
+  EXPECT_HOLDS(text_of(path("e.exr")), "minus exact");
 }
 
 // The exact picture itself as that of another program; with one wrong pixel.
@@ -76,21 +65,21 @@ TEST_F(RenderCommand, JudgesThePictureOfAnotherProgram) {
   ASSERT_EQ(render({"-o", path("a.exr"), "--double", path("a.npy"), "--size", "9x7"}).exit_code, 0);
   std::vector<double> numbers = files::read_npy(path("a.npy")).values;
   const auto judged = [&](const std::string& file, const std::string& result) {
-    const auto run = validation::run_program(EXACTFF_PROGRAM, words({"-o", path(result), "--against", path(file)}));
+    const auto run = run_exactff(words({"-o", path(result), "--against", path(file)}));
     EXPECT_EQ(run.exit_code, 0);
     return run.output;
   };
   const std::string same = judged("a.npy", "e.exr");
-  EXPECT_NE(same.find("errors: RMS 0, 99th percentile 0, worst 0;"), std::string::npos) << same;
+  EXPECT_HOLDS(same, "errors: RMS 0, 99th percentile 0, worst 0;");
   EXPECT_EQ(same.find("a.npy in "), std::string::npos) << same;  // nothing was computed
-  EXPECT_NE(text_of(path("e.exr")).find("a.npy"), std::string::npos);
-  EXPECT_NE(judged("a.exr", "e.png").find("0 % of pixels wrong"), std::string::npos);
+  EXPECT_HOLDS(text_of(path("e.exr")), "a.npy");
+  EXPECT_HOLDS(judged("a.exr", "e.png"), "0 % of pixels wrong");
   const std::size_t lit = static_cast<std::size_t>(
       std::ranges::find_if(numbers, [](double number) { return number > 0.0; }) - numbers.begin());
   numbers[lit] += 1.0;
   const std::vector<std::size_t> shape{7, 9, 3};
   files::write_npy<double>(path("b.npy"), shape, numbers);
-  EXPECT_NE(judged("b.npy", "e.png").find("worst 1;"), std::string::npos);
+  EXPECT_HOLDS(judged("b.npy", "e.png"), "worst 1;");
   EXPECT_EQ(render({"-o", path("s.png"), "--against", path("b.npy"), "--strip"}).exit_code, 0);
 }
 
@@ -113,9 +102,9 @@ TEST_F(RenderCommand, BadInputIsRefused) {
            {{"-o", image, "--against", path("a.npy")},
             "a.npy: has 5x4 pixels, and the picture 9x7 (each pixel is compared with one of the same place); give "
             "--size 5x4"}}) {
-    const validation::ProgramRun run = render(more);
+    const ProgramRun run = render(more);
     EXPECT_EQ(run.exit_code, 2) << told;
-    EXPECT_NE(run.error.find(told), std::string::npos) << run.error;
+    EXPECT_HOLDS(run.error, told);
   }
   EXPECT_EQ(files(), 1U) << "the array";
 }
@@ -124,7 +113,7 @@ TEST_F(RenderCommand, BadInputIsRefused) {
 TEST_F(RenderCommand, ALightmapAgreesWithTruthAtItsPoints) {
   const std::string scene = EXACTFF_DATA_DIR "/scenes/lightmap_room.obj";
   const auto run = [&](const Words& words) {
-    const auto ran = validation::run_program(EXACTFF_PROGRAM, words);
+    const auto ran = run_exactff(words);
     EXPECT_EQ(ran.exit_code, 0) << ran.error;
     return ran.output;
   };
@@ -134,16 +123,16 @@ TEST_F(RenderCommand, ALightmapAgreesWithTruthAtItsPoints) {
     return run(more);
   };
   const std::string told = with({path("a.exr"), "--layers", "--margin", "1"});
-  EXPECT_NE(told.find("47 x 47 texels: "), std::string::npos) << told;
-  EXPECT_NE(told.find("charts: 1992 faces; "), std::string::npos) << told;
+  EXPECT_HOLDS(told, "47 x 47 texels: ");
+  EXPECT_HOLDS(told, "charts: 1992 faces; ");
   for (const char* words : {"v = 1 above the first row", "margin", "irradiance", "position.X"})
-    EXPECT_NE(text_of(path("a.exr")).find(words), std::string::npos) << words;
+    EXPECT_HOLDS(text_of(path("a.exr")), words) << words;
   run({"truth", scene, "--receivers", path("a.exr"), "--on", "auto", "--total", "irradiance", "-o", path("t.csv"),
        "--exr", path("t.exr")});
   const std::string errors = with({path("e.png"), "--against", path("t.exr")});
-  EXPECT_NE(errors.find("; 0 % of pixels wrong by over 10 %"), std::string::npos) << errors;
+  EXPECT_HOLDS(errors, "; 0 % of pixels wrong by over 10 %");
   const std::string some = with({path("b.png"), "--on", "light_1,floor:1", "--measure", "solid-angle"});
-  EXPECT_NE(some.find("charts: 3 faces"), std::string::npos) << some;
+  EXPECT_HOLDS(some, "charts: 3 faces");
   for (const auto& [words, message] : std::vector<std::pair<Words, std::string>>{
            {{"render", scene, "--lightmap", "48", "-o", path("c.png")}, "--lightmap: '48' is not a size"},
            {{"render", scene, "--uv", "1", "-o", path("c.png")}, "--uv requires --lightmap"},
@@ -153,37 +142,10 @@ TEST_F(RenderCommand, ALightmapAgreesWithTruthAtItsPoints) {
            {{"render", scene, "--lightmap", "4x4", "--uv", "1", "-o", path("c.png")}, "no face has texture"},
            {{"render", scene, "--lightmap", "4x4", "--against", path("t.exr"), "-o", path("c.png")},
             "give --lightmap 47x47"}}) {
-    const validation::ProgramRun refused = validation::run_exactff(words);
+    const ProgramRun refused = run_exactff(words);
     EXPECT_EQ(refused.exit_code, 2) << message;
-    EXPECT_NE(refused.error.find(message), std::string::npos) << refused.error;
+    EXPECT_HOLDS(refused.error, message);
   }
-}
-
-TEST_F(RenderCommand, ContinuesAfterAnInterruption) {
-  const Words long_run = {"--size", "300x300", "--spp", "2", "-o", path("a.exr")};
-  RunningProgram program(EXACTFF_PROGRAM, words(long_run), directory_.path() / "error");
-  while (validation::size_of(path("a.exr.part")) < 100'000 && !program.has_ended()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  program.send(SIGINT);
-  const auto start = std::chrono::steady_clock::now();
-  ASSERT_EQ(program.wait(), 128 + SIGINT);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
-  EXPECT_NE(program.error().find("--resume"), std::string::npos);
-  EXPECT_FALSE(fs::exists(path("a.exr")));
-  const validation::ProgramRun refused = render(long_run);
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.error.find("finished work of an interrupted run"), std::string::npos) << refused.error;
-  const validation::ProgramRun other = render({"--size", "8x8", "-o", path("a.exr"), "--resume"});
-  EXPECT_EQ(other.exit_code, 2);
-  EXPECT_NE(other.error.find("tiles of another image"), std::string::npos) << other.error;
-  Words again = long_run;
-  again.emplace_back("--resume");
-  const validation::ProgramRun resumed = render(again);
-  EXPECT_EQ(resumed.exit_code, 0);
-  EXPECT_NE(resumed.error.find("were reused"), std::string::npos);
-  EXPECT_TRUE(fs::exists(path("a.exr")));
-  EXPECT_FALSE(fs::exists(path("a.exr.part")));
 }
 
 }  // namespace

@@ -1,11 +1,7 @@
 // What exactff matrix says while it takes long.
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "cli/view_factor_words.h"
 #include "exactff/models.h"
-#include "support/program.h"
+#include "support/test.h"
 
 namespace exactff::cli {
 namespace {

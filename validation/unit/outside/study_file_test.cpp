@@ -1,14 +1,10 @@
 // The file that describes a study.
-#include <gtest/gtest.h>
-
 #include "flags/comparison.h"
 #include "report/plan.h"
-#include "support/program.h"
+#include "support/test.h"
 
 namespace exactff::cli {
 namespace {
-
-using Words = std::vector<std::string>;
 
 class StudyFileReader : public ::testing::Test {
  protected:
@@ -28,7 +24,7 @@ class StudyFileReader : public ::testing::Test {
     return {};
   }
 
-  const validation::TemporaryDirectory directory_;
+  const TemporaryDirectory directory_;
 };
 
 TEST_F(StudyFileReader, TakesTitleScenesAndExperiments) {
@@ -58,27 +54,13 @@ TEST_F(StudyFileReader, TellsEverythingThatIsWrongWithItsLine) {
       "scene a.obj\n"
       "experiment\n"
       "field cycles.csv\n");
-  EXPECT_NE(said.find("a.study:1: a line begins with 'Scene'"), std::string::npos) << said;
-  EXPECT_NE(said.find("a.study:2: nothing follows 'title'"), std::string::npos) << said;
-  EXPECT_NE(said.find("a.study:3: a quote is not closed (the end of the word is unknown); close it with '"),
-            std::string::npos)
-      << said;
-  EXPECT_NE(said.find("a.study:4: nothing follows 'scene'"), std::string::npos) << said;
-  EXPECT_NE(said.find("a.study:6: nothing follows 'experiment'"), std::string::npos) << said;
-  EXPECT_NE(said.find("a.study:7: a line begins with 'field'"), std::string::npos) << said;
+  EXPECT_HOLDS(said, "a.study:1: a line begins with 'Scene'");
+  EXPECT_HOLDS(said, "a.study:2: nothing follows 'title'");
+  EXPECT_HOLDS(said, "a.study:3: a quote is not closed (the end of the word is unknown); close it with '");
+  EXPECT_HOLDS(said, "a.study:4: nothing follows 'scene'");
+  EXPECT_HOLDS(said, "a.study:6: nothing follows 'experiment'");
+  EXPECT_HOLDS(said, "a.study:7: a line begins with 'field'");
   EXPECT_EQ(said.find("a.study:5"), std::string::npos) << said;
-}
-
-TEST(SplitWords, TakesWhatQuotesHold) {
-  const auto split = [](const char* line) { return flags::split_words(line, "f", 1); };
-  EXPECT_EQ(split(""), Words{});
-  EXPECT_EQ(split("  a\tb  "), (Words{"a", "b"}));
-  EXPECT_EQ(split("--title=\"two words\" 'it is \"so\"'"), (Words{"--title=two words", "it is \"so\""}));
-  EXPECT_EQ(split("\"\" ''"), (Words{"", ""}));
-  EXPECT_EQ(split("a\"b c\"d"), Words{"ab cd"});
-  EXPECT_EQ(split("it\"'\"s"), Words{"it's"});
-  EXPECT_THROW((void)split("a \"b"), InputError);
-  EXPECT_THROW((void)split("a 'b\""), InputError);
 }
 
 }  // namespace

@@ -4,25 +4,16 @@
 #include <CGAL/Gmpzf.h>
 #include <CGAL/QP_functions.h>
 #include <CGAL/QP_models.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <chrono>
-#include <cmath>
 #include <cstdlib>
-#include <numeric>
-#include <string>
-#include <vector>
 
 #include "exactff/scene_files.h"
-#include "generate/random.h"
-#include "support/program.h"
+#include "support/shapes.h"
+#include "support/test.h"
 
 namespace exactff::matrix {
 namespace {
-
-using generate::Random;
 
 std::vector<Selection> patches(std::size_t count) {
   std::vector<Selection> all;
@@ -30,8 +21,8 @@ std::vector<Selection> patches(std::size_t count) {
   return all;
 }
 
-std::vector<std::string> names(std::size_t count) {
-  std::vector<std::string> all;
+Words names(std::size_t count) {
+  Words all;
   for (std::size_t i = 0; i < count; ++i) all.push_back("patch " + std::to_string(1000 + i));
   return all;
 }
@@ -247,7 +238,7 @@ TEST(Balanced, TheOrderOfPatchesChangesNoBit) {
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t{0});
   generate::shuffle(random, order);
-  std::vector<std::string> moved(n);
+  Words moved(n);
   for (std::size_t i = 0; i < n; ++i) moved[order[i]] = names(n)[i];
   const Balanced other = balanced_of(reordered(matrix, order), moved);
   ASSERT_TRUE(other.is_found());
@@ -312,30 +303,6 @@ TEST(Balanced, DirectionsThatContradictEachOtherAreNamed) {
   EXPECT_FALSE(found.is_found());
 }
 
-// EXACTFF_TEST_SCALE=16 is the size of a building of 4,872 patches.
-TEST(Balanced, ManyPatchesAreBalancedInSeconds) {
-  const char* const scale = std::getenv("EXACTFF_TEST_SCALE");
-  const std::size_t n = scale == nullptr ? 304 : 304 * static_cast<std::size_t>(std::stoul(scale)) + 8;
-  Random random(4872);
-  const Matrix matrix = random_matrix(random, {n, 0.2, 1e-3, true});
-  const std::vector<std::string> all = names(n);
-  const auto start = std::chrono::steady_clock::now();
-  const Balanced found = balanced_of(matrix, all);
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  EXPECT_TRUE(found.is_found());
-  EXPECT_LE(found.furthest, 0x1p-52);
-  EXPECT_LT(taken.count(), 10.0);
-  RecordProperty("seconds", std::to_string(taken.count()));
-}
-
-// --- Scenes ---
-
-std::vector<Selection> whole_scene(const Scene& scene) {
-  std::vector<Selection> all;
-  for (std::size_t i = 0; i < scene.patches().size(); ++i) all.push_back({static_cast<PatchId>(i), {}, scene.id()});
-  return all;
-}
-
 TEST(Balanced, RoomsOfTheRepositoryAre) {
   std::vector<const char*> names{
       "scenes/cornell_box.obj",    "scenes/slats.obj",           "scenes/triangular_cavity.obj",
@@ -346,7 +313,7 @@ TEST(Balanced, RoomsOfTheRepositoryAre) {
   for (const char* name : names) {
     SCOPED_TRACE(name);
     const Scene scene = read_scene(std::string(EXACTFF_DATA_DIR "/") + name);
-    const Matrix matrix = compute(scene, whole_scene(scene), whole_scene(scene),
+    const Matrix matrix = compute(scene, all_patches(scene), all_patches(scene),
                                   {.factors = {.accuracy = 0.1}, .backs = true, .open = true});
     const Balanced found = balanced(scene, matrix);
     expect_balanced(matrix, found);
@@ -357,34 +324,30 @@ TEST(Balanced, RoomsOfTheRepositoryAre) {
 class BalanceCommand : public testing::Test {
  protected:
   [[nodiscard]] std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
-  [[nodiscard]] validation::ProgramRun run(std::vector<std::string> flags) const {
-    flags.insert(flags.begin(), {"matrix", scene_});
-    return validation::run_exactff(flags);
-  }
+  [[nodiscard]] ProgramRun run(const Words& flags) const { return run_exactff(joined({"matrix", scene_}, flags)); }
 
   const std::string scene_ = EXACTFF_DATA_DIR "/scenes/formats/test4.vs3";
-  const validation::TemporaryDirectory folder_;
+  const TemporaryDirectory folder_;
 };
 
 TEST_F(BalanceCommand, WritesTheSameFromAFileOnAnyNumberOfThreads) {
   ASSERT_EQ(run({"--backs", "--to", "all,sky", "--accuracy", "1e-3", "-o", file("m.csv")}).exit_code, 0);
   ASSERT_EQ(run({"--balance", "--accuracy", "1e-3", "--threads", "1", "-o", file("b.csv")}).exit_code, 0);
-  const validation::ProgramRun again =
-      run({"--balance", "--matrix", file("m.csv"), "--threads", "2", "-o", file("again.csv")});
+  const ProgramRun again = run({"--balance", "--matrix", file("m.csv"), "--threads", "2", "-o", file("again.csv")});
   EXPECT_EQ(again.exit_code, 0);
-  EXPECT_NE(again.output.find("the same double"), std::string::npos);
-  EXPECT_EQ(validation::text_of(file("b.csv")), validation::text_of(file("again.csv")));
+  EXPECT_HOLDS(again.output, "the same double");
+  EXPECT_EQ(text_of(file("b.csv")), text_of(file("again.csv")));
   const Scene scene = read_scene(scene_);
   const NamedMatrix named = read_named(file("b.csv"));
   const table::Table table = table::read(file("b.csv"));
-  Matrix matrix{{whole_scene(scene), whole_scene(scene), named.entries}, named.back, named.open, named.buried};
+  Matrix matrix{{all_patches(scene), all_patches(scene), named.entries}, named.back, named.open, named.buried};
   const Balanced found = balanced(scene, matrix);
   EXPECT_EQ(table.numbers(table.column("balanced").value())[1], found.entries[1]);
 }
 
 TEST_F(BalanceCommand, ProvesThatAPlantedMatrixIsImpossible) {
   ASSERT_EQ(run({"--backs", "--to", "all,sky", "--certify", "--accuracy", "1e-3", "-o", file("m.csv")}).exit_code, 0);
-  std::string text = validation::text_of(file("m.csv"));
+  std::string text = text_of(file("m.csv"));
   NamedMatrix named = read_named(file("m.csv"));
   const Scene scene = read_scene(scene_);
   for (std::size_t j = 0; j < named.to.size(); ++j) {
@@ -393,19 +356,19 @@ TEST_F(BalanceCommand, ProvesThatAPlantedMatrixIsImpossible) {
       f.value *= 0.9, f.lower *= 0.9, f.upper *= 0.9;
     }
   }
-  const Matrix planted{{whole_scene(scene), whole_scene(scene), named.entries}, named.back, named.open, named.buried};
+  const Matrix planted{{all_patches(scene), all_patches(scene), named.entries}, named.back, named.open, named.buried};
   table::write(table_of(scene, planted, options_of(named.head)), file("planted.csv"));
-  const validation::ProgramRun run = this->run({"--balance", "--matrix", file("planted.csv"), "-o", file("b.csv")});
+  const ProgramRun run = this->run({"--balance", "--matrix", file("planted.csv"), "-o", file("b.csv")});
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_NE(run.error.find("there is no balanced matrix: the row of 'srf-1' misses 1"), std::string::npos) << run.error;
+  EXPECT_HOLDS(run.error, "there is no balanced matrix: the row of 'srf-1' misses 1");
   EXPECT_FALSE(std::filesystem::exists(file("b.csv")));
 }
 
 TEST_F(BalanceCommand, RefusesWhatNeedNotAddUp) {
-  const auto refused = [&](const std::vector<std::string>& flags, const std::string& why) {
-    const validation::ProgramRun found = run(flags);
+  const auto refused = [&](const Words& flags, const std::string& why) {
+    const ProgramRun found = run(flags);
     EXPECT_EQ(found.exit_code, 2);
-    EXPECT_NE(found.error.find(why), std::string::npos) << found.error;
+    EXPECT_HOLDS(found.error, why);
   };
   refused({"--balance", "--transparent", "srf-1"}, "some faces are transparent");
   refused({"--balance", "--from", "srf-1"}, "not the same patches as rows and as columns");

@@ -1,34 +1,23 @@
 // Truths, candidates and reports of a few rows, for the tests of the check.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "exactff/check.h"
-#include "support/holds.h"
-#include "support/program.h"
-
-#define EXPECT_HOLDS(text, part) \
-  EXPECT_TRUE(exactff::validation::holds(text, part)) << "\"" << (part) << "\" is not in:\n" << (text)
+#include "support/test.h"
 
 namespace exactff::check {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 inline Truth truth_of(const std::string& text, const std::string& column = "exact") {
-  const validation::TemporaryDirectory directory;
+  const TemporaryDirectory directory;
   return read_truth(directory.write("truth.csv", text), column);
 }
 
 inline Candidate candidate_of(const std::string& text, const CandidateColumns& columns = {},
                               MatchBy by = MatchBy::kReceiver) {
-  const validation::TemporaryDirectory directory;
+  const TemporaryDirectory directory;
   return read_candidate(directory.write("mine.csv", text), {}, columns, by);
 }
 inline std::vector<double> values_of(const Candidate& candidate) {

@@ -1,21 +1,16 @@
 // What is said about scenes that were modelled with a slip, and that nothing is said about others.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <sstream>
-#include <string>
-
 #include "exactff/exact.h"
 #include "exactff/models.h"
 #include "exactff/scene_files.h"
 #include "exactff/slips.h"
-#include "generate/plain_scene.h"
 #include "models/rooms.h"
+#include "support/shapes.h"
+#include "support/test.h"
 
 namespace exactff::slips {
 namespace {
+
+using Names = std::vector<std::string>;
 
 Scene read(const std::string& text) {
   std::istringstream in(text);
@@ -41,8 +36,6 @@ std::string flag(const Scene& scene, Kind kind) {
   }
   return "none";
 }
-
-using Names = std::vector<std::string>;
 
 // A room [0,4]^3 without a lid and with a lamp [1,2]^2 under it; all fronts look inward, the lamp's downward.
 const std::string kVertices =
@@ -83,31 +76,6 @@ TEST(Diagnosis, ComparesTheNormalsInTheFileWithTheWinding) {
   EXPECT_EQ(scene.with_flipped(scene.select("a")).faces()[1].file_normals, FileNormals::kContradict);
 }
 
-// A cube on a floor, wound outward. What vn say of one side alone cannot outweigh its neighbours, closed or not.
-TEST(Diagnosis, DoesNotTearASurfaceForItsNormals) {
-  const std::string vertices =
-      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nv -4 -4 -1\nv 4 -4 -1\nv 4 4 -1\n"
-      "vn 0 0 1\nvn 0 0 -1\nvn 0 -1 0\nvn 0 1 0\n";
-  const auto cube = [&](const char* top, const char* others) {
-    const std::string up = std::string("//") + top, out = others;
-    const auto corner = [](int v, const std::string& n) { return ' ' + std::to_string(v) + n; };
-    const auto face = [&](std::array<int, 4> v, const std::string& n) {
-      std::string line = "f";
-      for (const int one : v) line += corner(one, n);
-      return line + '\n';
-    };
-    return vertices + "g box\n" + face({1, 4, 3, 2}, "") + face({5, 6, 7, 8}, up) + face({1, 2, 6, 5}, out) +
-           face({2, 3, 7, 6}, "") + face({3, 4, 8, 7}, "") + "g floor\nf 9 10 11\n";
-  };
-  const Scene torn = read(cube("2", "//3") + "g box\nf 4 1 5 8\n");
-  EXPECT_EQ(kinds_of(torn), Names{"contradicting-normals"});
-  EXPECT_EQ(flag(torn, Kind::kNormals), "");
-  EXPECT_NE(sentence(torn, Kind::kNormals).find("agrees with that of their neighbours: there vn is the likely slip"),
-            std::string::npos);
-  EXPECT_EQ(flag(read(cube("2", "")), Kind::kNormals), "") << "a side is missing";
-  EXPECT_EQ(kinds_of(read(cube("1", "//3") + "g box\nf 4 1 5 8\n")), Names{});
-}
-
 // A tetrahedron, outward, at the origin of the given vertices.
 std::string tetrahedron(const std::string& name, int first, bool outward) {
   const auto face = [&](int a, int b, int c) {
@@ -141,35 +109,11 @@ TEST(Diagnosis, LetsRoomsAndHollowsLookInward) {
   EXPECT_EQ(flag(two, Kind::kInwardSurface), "--flip b");
 }
 
-// A box as a patch of its own.
-void add_box(generate::PlainScene& plain, const std::string& name, const Vec3& low, const Vec3& high, bool outward) {
-  models::add_box(plain, name, {low, high});
-  if (outward) return;
-  for (models::PlainFace& face : plain.patch(name).faces) std::ranges::reverse(face.rings.front());
-}
-
-// Turned alone, the front of the table's bottom would lie on that of the leg's top. The leg's bottom, which looks up,
-// lies on the front of the floor, and must not be cut out of it.
-TEST(Diagnosis, FindsSolidsThatTouchAndLookInward) {
-  const auto kinds_with = [](bool outward, Vec3 leg) {
-    generate::PlainScene plain;
-    plain.add_ring(plain.patch("floor"), {{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0}});
-    add_box(plain, "table", {1, 1, 1}, {3, 3, 1.25}, outward);
-    add_box(plain, "leg", leg, {2, 2, 1}, outward);
-    const Scene scene = generate::build(plain);
-    return kinds_of(scene).empty() ? Names{} : Names{kinds_of(scene).front(), flag(scene, Kind::kInwardSurface)};
-  };
-  for (const double foot : {0.0, 0.25}) {
-    EXPECT_EQ(kinds_with(true, {1.5, 1.5, foot}), foot == 0.0 ? Names({"on-open-floor", "none"}) : Names{});
-    EXPECT_EQ(kinds_with(false, {1.5, 1.5, foot}), (Names{"inward-surface", "--flip table,leg"})) << foot;
-  }
-}
-
 TEST(Diagnosis, FindsRoomsThatLookOutward) {
   const auto room = [](bool outward, bool ground) {
-    generate::PlainScene plain;
+    PlainScene plain;
     plain.materials.push_back({.name = "bright", .radiosity = {5, 5, 5}});
-    add_box(plain, "room", {0, 0, 0}, {4, 4, 3}, outward);
+    add_box(plain, "room", {0, 0, 0}, {4, 4, 3}, outward ? Fronts::kOutside : Fronts::kInside);
     plain.add_ring(plain.patch("lamp"), {{1, 1, 2}, {1, 2, 2}, {2, 2, 2}, {2, 1, 2}});
     plain.patch("lamp").material = "bright";
     if (ground) plain.add_ring(plain.patch("ground"), {{-9, -9, -1}, {9, -9, -1}, {9, 9, -1}, {-9, 9, -1}});
@@ -185,77 +129,16 @@ TEST(Diagnosis, FindsRoomsThatLookOutward) {
   EXPECT_EQ(sentence(room(true, true), Kind::kOutwardRoom), "nothing") << "the ground sees it";
 }
 
-// An L whose inner corner looks at itself from outside; a T-junction at (2, 1, 0).
-TEST(Diagnosis, FindsConcaveRoomsThatLookOutward) {
-  const std::string vertices =
-      "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 2 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 2 0 1\nv 2 2 1\nv 1 2 1\nv 1 1 1\nv 0 1 1\n"
-      "v 2 1 0\n";
-  const Scene outward = read(
-      vertices +
-      "g floor1\nf 6 5 13 2 1\ng floor2\nf 5 4 3 13\ng ceiling\nf 7 8 9 10 11 12\ng south\nf 1 2 8 7\n"
-      "g east\nf 2 3 9 8\ng north1\nf 3 4 10 9\ng west1\nf 4 5 11 10\ng north2\nf 5 6 12 11\ng west2\nf 6 1 7 12\n");
-  EXPECT_EQ(kinds_of(outward), Names{"outward-room"});
-  EXPECT_EQ(flag(outward, Kind::kOutwardRoom), "--flip all");
-  EXPECT_NE(sentence(outward, Kind::kOutwardRoom).find("unless it is a solid, turn them round"), std::string::npos);
-  std::vector<Selection> others;
-  for (const Patch& patch : outward.patches()) {
-    if (patch.name != "west1") others.push_back(outward.select(patch.name));
-  }
-  const Scene all_but_one = outward.with_flipped(others);
-  EXPECT_EQ(flag(all_but_one, Kind::kOutwardRoom), "--flip west1");
-  EXPECT_EQ(kinds_of(all_but_one.with_flipped(all_but_one.select("west1"))), Names{});
-  EXPECT_EQ(warnings_of_fronts(outward).size(), 1U);
-}
-
-// Solids that stand on a ground, of several patches or one, and a hollow one with nothing outside.
-TEST(Diagnosis, LetsSolidsLookOutward) {
-  for (const bool ground : {false, true}) {
-    generate::PlainScene plain;
-    add_box(plain, "outside", {0, 0, 0}, {2, 2, 6}, true);
-    if (ground) plain.add_ring(plain.patch("ground"), {{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}});
-    if (!ground) add_box(plain, "inside", {0.25, 0.25, 0.25}, {1.75, 1.75, 5.75}, false);
-    EXPECT_EQ(kinds_of(generate::build(plain)), ground ? Names{"on-open-floor"} : Names{});
-  }
-}
-
-// Of each triangle of a bent face, rays start in its own plane.
-TEST(Diagnosis, FindsNoneInRoomsWithBentFaces) {
-  for (int exponent = 1; exponent <= 12; ++exponent) {
-    for (const double sign : {1.0, -1.0}) {
-      const double z = 2.5 + sign * std::pow(10.0, -exponent);
-      PlainScene room;
-      const auto add = [&](const char* name, const std::vector<Vec3>& ring) { room.add_ring(room.patch(name), ring); };
-      add("floor", {{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}});
-      add("ceiling", {{0, 3, z}, {4, 3, 2.5}, {4, 0, 2.5}, {0, 0, 2.5}});
-      add("south", {{4, 0, 0}, {0, 0, 0}, {0, 0, 2.5}, {4, 0, 2.5}});
-      add("east", {{4, 3, 0}, {4, 0, 0}, {4, 0, 2.5}, {4, 3, 2.5}});
-      add("north", {{0, 3, 0}, {4, 3, 0}, {4, 3, 2.5}, {0, 3, z}});
-      add("west", {{0, 0, 0}, {0, 3, 0}, {0, 3, z}, {0, 0, 2.5}});
-      EXPECT_EQ(sentence(generate::build(room), Kind::kUnseenFront), "nothing") << sign << ' ' << exponent;
-    }
-  }
-}
-
 TEST(Diagnosis, FindsFrontsThatNobodySees) {
   const Scene room = read(kRoom);
   const Scene flipped = room.with_flipped(room.select("floor"));
-  EXPECT_NE(sentence(flipped, Kind::kUnseenFront).find("leave out --flip for 'floor'"), std::string::npos);
+  EXPECT_HOLDS(sentence(flipped, Kind::kUnseenFront), "leave out --flip for 'floor'");
   EXPECT_EQ(flag(flipped, Kind::kUnseenFront), "") << "no warning suggests what was given";
   const Scene scene = read(kVertices + kWalls + "g floor\nf 4 3 2 1\n" + kLamp);
   EXPECT_EQ(sentence(scene, Kind::kUnseenFront),
             "no other patch sees the front of 'floor', as far as rays can tell (receivers there see nothing, and it "
             "lights nothing); if the other side is meant, turn it round with --flip floor");
   EXPECT_EQ(kinds_of(scene), Names{"unseen-front"});
-}
-
-// Of a thin lamp of two faces the floor sees the one that looks down, whichever comes first.
-TEST(Diagnosis, OfCoincidentFacesTheFrontIsSeen) {
-  const std::string places = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
-  const std::string floor = "g floor\nf 1 2 3 4\n", up = "g up\nf 5 6 7 8\n", down = "g down\nf 8 7 6 5\n";
-  for (const std::string& faces : {floor + up + down, floor + down + up, up + floor + down, down + up + floor}) {
-    EXPECT_EQ(kinds_of(read(places + faces)), Names{}) << faces;
-  }
-  EXPECT_EQ(kinds_of(read_obj(EXACTFF_DATA_DIR "/regression/lamp_of_two_faces.obj")), Names{});
 }
 
 // Nothing is above the roof of a house, and that is no slip.
@@ -268,15 +151,8 @@ TEST(Diagnosis, LeavesTheRoofsOfSolidsAlone) {
   EXPECT_EQ(flag(read(vertices + "g floor\nf 1 2 3 4\n" + open), Kind::kUnseenFront), "--flip a,b,c");
 }
 
-// A small lamp that no ray of a few dozen meets.
-TEST(Diagnosis, SeesSmallThings) {
-  const std::string far = "v 0 0 0\nv 900 0 0\nv 900 900 0\nv 0 900 0\nv 1 1 300\nv 1 2 300\nv 2 2 300\nv 2 1 300\n";
-  EXPECT_EQ(kinds_of(read(far + "g floor\nf 1 2 3 4\ng lamp\nf 5 6 7 8\n")), Names{});
-  EXPECT_EQ(flag(read(far + "g floor\nf 4 3 2 1\ng lamp\nf 5 6 7 8\n"), Kind::kUnseenFront), "--flip floor");
-}
-
 Scene with_emitting_lamp(const std::string& lamp) {
-  generate::PlainScene plain;
+  PlainScene plain;
   plain.materials.push_back({.name = "bright", .radiosity = {5, 5, 5}});
   plain.add_ring(plain.patch("floor"), {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
   const std::vector<Vec3> up{{1, 1, 3}, {2, 1, 3}, {2, 2, 3}, {1, 2, 3}}, down(up.rbegin(), up.rend());
@@ -313,11 +189,9 @@ TEST(Diagnosis, FindsTwinFaces) {
   const Scene sheet = read(kRoom + sail + again + "g lamp\nf 13 14 15 16\nf 20 19 18 17\n");
   EXPECT_EQ(kinds_of(sheet), Names{"opposite-faces"});
   EXPECT_EQ(flag(sheet, Kind::kOppositeFaces), "--transparent lamp:3");
-  EXPECT_NE(
-      sentence(sheet, Kind::kOppositeFaces)
-          .find("if they are the two sides of a lamp or a sheet, keep both, and for receivers on it let light pass "
-                "through one with --transparent lamp:3; otherwise remove one"),
-      std::string::npos);
+  EXPECT_HOLDS(sentence(sheet, Kind::kOppositeFaces),
+               "if they are the two sides of a lamp or a sheet, keep both, and for receivers on it let light pass "
+               "through one with --transparent lamp:3; otherwise remove one");
   // One corner is another.
   EXPECT_EQ(sentence(read(kRoom + "v 1 1 3.5\ng more\nf 9 10 11 13\n"), Kind::kDoubledFaces), "nothing");
 }
@@ -325,9 +199,8 @@ TEST(Diagnosis, FindsTwinFaces) {
 TEST(Diagnosis, AsksForTheUnit) {
   EXPECT_EQ(sentence(read(kRoom), Kind::kScale), "nothing");
   EXPECT_EQ(kinds_of(read("v 0 0 0\nv 20000 0 0\nv 20000 5000 0\nf 1 2 3\n")), Names{"scale"});
-  EXPECT_NE(sentence(read("v 0 0 0\nv 20000 0 0\nv 20000 5000 0\nf 1 2 3\n"), Kind::kScale)
-                .find("the scene is 2e+04 long: is the unit of length right?"),
-            std::string::npos);
+  EXPECT_HOLDS(sentence(read("v 0 0 0\nv 20000 0 0\nv 20000 5000 0\nf 1 2 3\n"), Kind::kScale),
+               "the scene is 2e+04 long: is the unit of length right?");
   EXPECT_EQ(kinds_of(read("v 0 0 0\nv 2e-4 0 0\nv 2e-4 5e-4 0\nf 1 2 3\n")), Names{"scale"});
 }
 
@@ -353,13 +226,6 @@ TEST(Diagnosis, TakesAnyCoordinates) {
             Names{"scale"});
 }
 
-TEST(Diagnosis, NamesThingsForTheShell) {
-  const Scene scene = read(
-      "v 0 0 0\nv 1 0 0\nv 1 1 0\nvn 0 0 -1\no the big one\nf 1//1 2//1 3//1\no a,b\nf 1//1 2//1 3//1\no other\nf 1 2 "
-      "3\n");
-  EXPECT_EQ(flag(scene, Kind::kNormals), "--flip a,b --flip 'the big one'");
-}
-
 TEST(FirstTry, ProposesAPairThatWorks) {
   const auto proposed = [](const Scene& scene) {
     const std::optional<FirstTry> first = first_try(scene);
@@ -372,13 +238,6 @@ TEST(FirstTry, ProposesAPairThatWorks) {
   const std::string box = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 1\nv 0 1 1\nv 1 1 1\n";
   EXPECT_EQ(proposed(read(box + "g none\nf 1 2 2\ng all\nf 1 2 3\nf 4 5 6\n")), "all:1 < all:2");
   EXPECT_EQ(proposed(read(box + "g none\nf 1 2 2\ng a\nf 1 2 3\ng b\nf 4 5 6\n")), "a < b");
-  // The faces of one patch differ in Ke: only a face can be the source.
-  generate::PlainScene plain;
-  plain.materials.push_back({.name = "bright", .radiosity = {5, 5, 5}});
-  plain.add_ring(plain.patch("floor"), {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
-  plain.add_ring(plain.patch("lamp"), {{1, 2, 3}, {2, 2, 3}, {2, 1, 3}, {1, 1, 3}});
-  plain.patch("lamp").material = "bright";
-  EXPECT_EQ(proposed(generate::build(plain)), "floor < lamp");
 }
 
 std::string dark(const Scene& scene, const std::vector<Receiver>& receivers, const std::string& source) {
@@ -429,18 +288,50 @@ TEST(DarkSources, ReceiversAHairBehindTheirFaceAreTold) {
   EXPECT_EQ(dark(scene, below, "lamp"), "nothing") << "true occlusion is no slip";
 }
 
-TEST(DarkSources, AreNoneWhereTheReceiversPatchIsOneOfManySources) {
-  const Scene scene = read(kRoom);
-  const std::vector<Receiver> receivers = grid_receivers(scene, scene.select("floor"), {2, 2});
-  std::vector<Selection> all;
-  for (const Patch& patch : scene.patches()) all.push_back(scene.select(patch.name));
-  EXPECT_TRUE(warnings_of_dark_sources(scene, receivers, all).empty());
+// Turned alone, the front of the table's bottom would lie on that of the leg's top. The leg's bottom, which looks up,
+// lies on the front of the floor, and must not be cut out of it.
+TEST(Diagnosis, FindsSolidsThatTouchAndLookInward) {
+  const auto kinds_with = [](bool outward, const Vec3& leg) {
+    PlainScene plain;
+    add(plain, "floor", {{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0}});
+    models::add_box(plain, "table", {{1, 1, 1}, {3, 3, 1.25}});
+    models::add_box(plain, "leg", {leg, {2, 2, 1}});
+    for (const char* box : {"table", "leg"}) {
+      for (generate::PlainFace& face : plain.patch(box).faces) {
+        if (!outward) std::ranges::reverse(face.rings.front());
+      }
+    }
+    const Scene scene = generate::build(plain);
+    return kinds_of(scene).empty() ? Names{} : Names{kinds_of(scene).front(), flag(scene, Kind::kInwardSurface)};
+  };
+  for (const double foot : {0.0, 0.25}) {
+    EXPECT_EQ(kinds_with(true, {1.5, 1.5, foot}), foot == 0.0 ? Names({"on-open-floor", "none"}) : Names{});
+    EXPECT_EQ(kinds_with(false, {1.5, 1.5, foot}), (Names{"inward-surface", "--flip table,leg"})) << foot;
+  }
 }
 
-TEST(Diagnosis, NormalsChangeNoValue) {
-  const std::string vertices = "v 0 0 1\nv 1 0 1\nv 1 1 1\nvn 0 0 1\nvn 0 0 -1\ng s\n";
-  EXPECT_EQ(read(vertices + "f 3//1 2//1 1//1\n").hash(), read(vertices + "f 3//2 2//2 1//2\n").hash());
-  EXPECT_EQ(read(vertices + "f 3//1 2//1 1//1\n").hash(), read(vertices + "f 3 2 1\n").hash());
+// A cube on a floor, wound outward. What vn say of one side alone cannot outweigh its neighbours, closed or not.
+TEST(Diagnosis, DoesNotTearASurfaceForItsNormals) {
+  const std::string vertices =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nv -4 -4 -1\nv 4 -4 -1\nv 4 4 -1\n"
+      "vn 0 0 1\nvn 0 0 -1\nvn 0 -1 0\nvn 0 1 0\n";
+  const auto cube = [&](const char* top, const char* others) {
+    const std::string up = std::string("//") + top, out = others;
+    const auto corner = [](int v, const std::string& n) { return ' ' + std::to_string(v) + n; };
+    const auto face = [&](std::array<int, 4> v, const std::string& n) {
+      std::string line = "f";
+      for (const int one : v) line += corner(one, n);
+      return line + '\n';
+    };
+    return vertices + "g box\n" + face({1, 4, 3, 2}, "") + face({5, 6, 7, 8}, up) + face({1, 2, 6, 5}, out) +
+           face({2, 3, 7, 6}, "") + face({3, 4, 8, 7}, "") + "g floor\nf 9 10 11\n";
+  };
+  const Scene torn = read(cube("2", "//3") + "g box\nf 4 1 5 8\n");
+  EXPECT_EQ(kinds_of(torn), Names{"contradicting-normals"});
+  EXPECT_EQ(flag(torn, Kind::kNormals), "");
+  EXPECT_HOLDS(sentence(torn, Kind::kNormals), "agrees with that of their neighbours: there vn is the likely slip");
+  EXPECT_EQ(flag(read(cube("2", "")), Kind::kNormals), "") << "a side is missing";
+  EXPECT_EQ(kinds_of(read(cube("1", "//3") + "g box\nf 4 1 5 8\n")), Names{});
 }
 
 }  // namespace

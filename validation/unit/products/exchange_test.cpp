@@ -1,35 +1,15 @@
-// Exchange factors over all bounces, and conductors.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <string>
-#include <vector>
-
+// What surfaces exchange, and the temperatures that balance it: closed forms, other arithmetic, and the command.
 #include "exactff/radiosity.h"
 #include "exactff/scene_files.h"
-#include "generate/plain_scene.h"
-#include "support/program.h"
+#include "support/shapes.h"
+#include "support/test.h"
 
 namespace exactff::radiosity {
 namespace {
 
-using generate::PlainScene;
-
 void set_kd(PlainScene& scene, const std::string& name, double kd, double ke = 0.0) {
   scene.patch(name).material = "of " + name;
   scene.materials.push_back({.name = "of " + name, .reflectance = {kd, kd, kd}, .radiosity = {ke, ke, ke}});
-}
-
-void add_cube(PlainScene& scene, const std::string& name, double h, bool inward) {
-  const std::vector<Vec3> c{{-h, -h, -h}, {h, -h, -h}, {h, h, -h}, {-h, h, -h},
-                            {-h, -h, h},  {h, -h, h},  {h, h, h},  {-h, h, h}};
-  for (std::vector<std::size_t> side : std::vector<std::vector<std::size_t>>{
-           {0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 4, 7, 3}, {1, 2, 6, 5}}) {
-    if (inward) std::ranges::reverse(side);
-    scene.add_ring(scene.patch(name), {c[side[0]], c[side[1]], c[side[2]], c[side[3]]});
-  }
 }
 
 matrix::Matrix whole_matrix(const Scene& scene, double accuracy) {
@@ -48,8 +28,8 @@ void expect_value(const BoundedValue& q, double truth, double width) {
 // A cube in a room: GR = A_1 / (1 / eps_1 + A_1 / A_2 (1 / eps_2 - 1)), whatever their shapes.
 TEST(Exchange, OfAThingInARoomIsTheClosedForm) {
   PlainScene plain;
-  add_cube(plain, "thing", 1.0, false);
-  add_cube(plain, "room", 3.0, true);
+  add_box(plain, "thing", {-1, -1, -1}, {1, 1, 1});
+  add_box(plain, "room", {-3, -3, -3}, {3, 3, 3}, Fronts::kInside);
   set_kd(plain, "thing", 0.3);
   set_kd(plain, "room", 0.6);
   const Scene scene = generate::build(plain);
@@ -118,19 +98,10 @@ TEST(Exchange, AddsUpToWhatRadiositiesAbsorb) {
   }
 }
 
-TEST(Exchange, WithoutABoundSaysWhy) {
-  PlainScene plain;
-  add_cube(plain, "room", 3.0, true);
-  set_kd(plain, "room", 1.0);
-  const Scene scene = generate::build(plain);
-  const Exchange found = exchange(scene, whole_matrix(scene, 1e-3));
-  EXPECT_NE(found.channels.front().no_bound.find("Kd is 1 or more on room"), std::string::npos);
-}
-
 TEST(ExchangeCommand, WritesATableThatIsReadAgain) {
-  const validation::TemporaryDirectory folder;
+  const TemporaryDirectory folder;
   const std::string file = (folder.path() / "b.csv").string();
-  const validation::ProgramRun run = validation::run_exactff(
+  const ProgramRun run = run_exactff(
       {"matrix", EXACTFF_DATA_DIR "/scenes/formats/test4.vs3", "--accuracy", "1e-3", "--balance", "--exchange", file});
   EXPECT_EQ(run.exit_code, 0);
   const table::Table table = table::read(file);
@@ -146,22 +117,149 @@ TEST(ExchangeCommand, WritesATableThatIsReadAgain) {
 
 // Before any pair is computed.
 TEST(ExchangeCommand, RefusesWhatTheSceneTells) {
-  const validation::TemporaryDirectory folder;
+  const TemporaryDirectory folder;
   const std::string scene = EXACTFF_DATA_DIR "/scenes/cornell_box.obj";
   const std::filesystem::path conductors = folder.path() / "e.gr", values = folder.path() / "m.csv";
-  const validation::ProgramRun run = validation::run_exactff(
+  const ProgramRun run = run_exactff(
       {"matrix", scene, "--accuracy", "1e-9", "--certify", "--esatan", conductors.string(), "-o", values.string()});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.error.find("Kd differs between red, green and blue"), std::string::npos) << run.error;
-  const validation::ProgramRun unknown =
-      validation::run_exactff({"matrix", scene, "--exchange", (folder.path() / "e.xyz").string()});
+  EXPECT_HOLDS(run.error, "Kd differs between red, green and blue");
+  const ProgramRun unknown = run_exactff({"matrix", scene, "--exchange", (folder.path() / "e.xyz").string()});
   EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_NE(unknown.error.find("name a file .csv, .npz or .jsonl"), std::string::npos) << unknown.error;
+  EXPECT_HOLDS(unknown.error, "name a file .csv, .npz or .jsonl");
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
   PlainScene bright;
-  add_cube(bright, "room", 1.0, true);
+  add_box(bright, "room", {-1, -1, -1}, {1, 1, 1}, Fronts::kInside);
   set_kd(bright, "room", 1.25);
   EXPECT_THROW(require_exchangeable(generate::build(bright)), InputError);
+}
+
+TEST(Exchange, WithoutABoundSaysWhy) {
+  PlainScene plain;
+  add_box(plain, "room", {-3, -3, -3}, {3, 3, 3}, Fronts::kInside);
+  set_kd(plain, "room", 1.0);
+  const Scene scene = generate::build(plain);
+  const Exchange found = exchange(scene, whole_matrix(scene, 1e-3));
+  EXPECT_HOLDS(found.channels.front().no_bound, "Kd is 1 or more on room");
+}
+
+// --- Temperatures and heats of gray surfaces: closed forms, a published cavity, files, the command ---
+
+// A cube of area 24 in a room of area 216, each of one temperature.
+Scene thing_in_a_room() {
+  PlainScene plain;
+  add_box(plain, "thing", {-1, -1, -1}, {1, 1, 1});
+  add_box(plain, "room", {-3, -3, -3}, {3, 3, 3}, Fronts::kInside);
+  plain.materials = {{.name = "thing", .reflectance = {0.3, 0.3, 0.3}},
+                     {.name = "room", .reflectance = {0.6, 0.6, 0.6}}};
+  for (generate::PlainPatch& patch : plain.patches) patch.material = patch.name;
+  return generate::build(plain);
+}
+constexpr double kConductor = 24.0 / (1.0 / 0.7 + 24.0 / 216.0 * (1.0 / 0.4 - 1.0));
+
+double power(double t) { return kStefanBoltzmann * t * t * t * t; }
+
+Temperatures solved(const Scene& scene, const std::vector<Known>& known, double sky = 0.0) {
+  const std::vector<Selection> patches = patches_of(scene);
+  const matrix::Matrix matrix =
+      matrix::compute(scene, patches, patches, {.factors = {.accuracy = 1e-7}, .backs = true, .open = true});
+  return temperatures(scene, matrix, {.patches = known, .open = sky});
+}
+
+void expect_within(const BoundedValue& q, double truth, double width) {
+  EXPECT_LE(q.lower, truth);
+  EXPECT_GE(q.upper, truth);
+  EXPECT_NEAR(q.value, truth, width);
+  EXPECT_LE(q.upper - q.lower, width);
+}
+
+TEST(Temperatures, OfAThingInARoomAreTheClosedForm) {
+  const Scene scene = thing_in_a_room();
+  const double heat = kConductor * (power(400.0) - power(300.0));
+  const Temperatures both = solved(scene, {{.temperature = 400.0}, {.temperature = 300.0}});
+  expect_within(both.heats[0], heat, 0.1);
+  expect_within(both.heats[1], -heat, 0.1);
+  EXPECT_LE(both.unbalanced.lower, 0.0);
+  EXPECT_GE(both.unbalanced.upper, 0.0);
+  const Temperatures warmed = solved(scene, {{.heat = heat}, {.temperature = 300.0}});
+  expect_within(warmed.temperatures[0], 400.0, 1e-2);
+  const Temperatures cooled = solved(scene, {{.temperature = 400.0}, {.heat = -heat}});
+  expect_within(cooled.temperatures[1], 300.0, 1e-2);
+  EXPECT_EQ(cooled.claim, Claim::kEstimated);
+}
+
+// A plate that gives off heat to a black sky, and what only reflects between plates of known temperature.
+TEST(Temperatures, OfAPlateUnderTheSkyAreTheClosedForm) {
+  PlainScene plain;
+  plain.add_ring(plain.patch("plate"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  plain.patch("plate").material = "grey";
+  plain.materials.push_back({.name = "grey", .reflectance = {0.2, 0.2, 0.2}});
+  const Scene scene = generate::build(plain);
+  const Temperatures found = solved(scene, {{.heat = 100.0}}, 250.0);
+  const double truth = std::pow((power(250.0) + 100.0 / 0.8) / kStefanBoltzmann, 0.25);
+  expect_within(found.temperatures[0], truth, 1e-3);
+  expect_within(found.to_open, 100.0, 1e-3);
+  EXPECT_EQ(found.to_back.upper, 0.0);
+  const Temperatures idle = solved(scene, {{.heat = 0.0}}, 250.0);
+  expect_within(idle.temperatures[0], 250.0, 1e-3);
+}
+
+TEST(Temperatures, TakesNoMoreHeatThanThereIs) {
+  EXPECT_THROW((void)solved(thing_in_a_room(), {{.temperature = 300.0}, {.heat = -1e6}}), InputError);
+}
+
+class TemperaturesCommand : public testing::Test {
+ protected:
+  [[nodiscard]] std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
+  void expect_refused(const std::string& conditions, const std::string& what) const {
+    const ProgramRun run = run_exactff(
+        {"radiosity", scene_, "--temperatures", folder_.write("bad.csv", conditions).string(), "--accuracy", "1e-2"});
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_HOLDS(run.error, what);
+  }
+
+  const std::string scene_ = EXACTFF_DATA_DIR "/scenes/triangular_cavity.obj";
+  const TemporaryDirectory folder_;
+};
+
+// A thread of CalculiX' forum on COMSOL's tutorial says about 641 K and 600 K. Without ends, the crossed strings give
+// 640.683 K and 598.772 K; the cavity here is 1000 long, and its ends make a difference of 0.02 K.
+TEST_F(TemperaturesCommand, ComputesTheTriangularCavity) {
+  const ProgramRun run =
+      run_exactff({"radiosity", scene_, "--temperatures", EXACTFF_DATA_DIR "/scenes/triangular_cavity.csv",
+                   "--accuracy", "1e-5", "-o", file("t.csv")});
+  EXPECT_EQ(run.exit_code, 0);
+  const table::Table table = table::read(file("t.csv"));
+  const std::vector<double>& t = table.numbers(table.column("temperature").value());
+  const std::vector<double>& heat = table.numbers(table.column("heat").value());
+  EXPECT_EQ(t[0], 300.0);
+  EXPECT_NEAR(t[1], 640.683, 0.05);
+  EXPECT_NEAR(t[2], 598.772, 0.05);
+  EXPECT_NEAR(heat[0], -1.1e7, 1.0);
+  // The same in millimetres, with as much heat per area.
+  const auto small = folder_.write("small.csv", "patch,T,Q\nbottom,300,\nside,,6\nslope,,5\nends,,0\n");
+  ASSERT_EQ(run_exactff({"radiosity", scene_, "--unit", "mm", "--temperatures", small, "--accuracy", "1e-5", "-o",
+                         file("mm.csv")})
+                .exit_code,
+            0);
+  const table::Table of_small = table::read(file("mm.csv"));
+  EXPECT_NEAR(of_small.numbers(of_small.column("temperature").value())[1], t[1], 1e-9);
+  EXPECT_NEAR(of_small.numbers(of_small.column("heat").value())[0], 1e-6 * heat[0], 1e-5);
+}
+
+TEST_F(TemperaturesCommand, RefusesConditionsThatAreNone) {
+  expect_refused("patch,T,Q\nbottom,300,\nside,,6\nslope,,5\n", "has no row for 'ends'");
+  expect_refused("patch,T,Q\n*,300,5\n", "bad.csv:2: there are both T and Q");
+  expect_refused("patch,T,Q\nbottom,,\n", "bad.csv:2: there is neither T nor Q");
+  expect_refused("patch,T,Q\n*,-3,\n", "bad.csv:2: T is -3");
+  expect_refused("patch,T,Q\n*,warm,\n", "bad.csv:2:");
+  expect_refused("patch,T,Q\n*,300,\nends,300,\n", "bad.csv:3: 'ends' has two rows");
+  expect_refused("patch,T,Q\nlid,300,\n", "bad.csv:2:");
+  expect_refused("name,T,Q\nlid,300,\n", "bad.csv:1: the first line has not the columns");
+  expect_refused("patch,T,Q\n*,300,\n(open),,5\n", "bad.csv:3: (open) has a Q");
+  expect_refused("patch,T,Q\nbottom,1e200,\nside,300,\nslope,300,\nends,300,\n",
+                 "'bottom' gives off more than 1e+300 W per square metre (doubles end");
+  expect_refused("patch,T,Q\n*,,0\n", "no patch has a temperature, and nothing is open");
 }
 
 }  // namespace

@@ -17,16 +17,14 @@ import OpenImageIO as oiio
 CAMERA = "--eye 278 273 -800 --look 278 273 0 --fov 39.3 --size 24x24".split()
 
 
-def channels(path):
+def read(path):
     image = oiio.ImageInput.open(str(path))
     spec = image.spec()
     found = {}
     for at, (name, kind) in enumerate(zip(spec.channelnames, spec.channelformats or [spec.format] * spec.nchannels)):
         found[name] = numpy.asarray(image.read_image(at, at + 1, "uint" if str(kind) == "uint" else "float"))[:, :, 0]
-        assert str(kind) == ("uint" if name.startswith(("id.", "visible.")) else "float"), (name, kind)
-    attributes = {one.name: one.value for one in spec.extra_attribs}
-    image.close()
-    return found, attributes
+        assert str(kind) == ("uint" if name.startswith(("id.", "visible.", "mark")) else "float"), (name, kind)
+    return found, spec
 
 
 def expect_equal(a, b, what):
@@ -83,7 +81,8 @@ def main():
         render = [program, "render", scene, *CAMERA]
         subprocess.run([*render, "--layers", "-o", folder / "a.exr", "--double", folder / "a.npy"], check=True,
                        stdout=subprocess.DEVNULL)
-        image, attributes = channels(folder / "a.exr")
+        image, spec = read(folder / "a.exr")
+        attributes = {one.name: one.value for one in spec.extra_attribs}
         assert set(image) == {"R", "G", "B", "F.light", "visible.light", "fraction.light", "position.X", "position.Y",
                               "position.Z", "normal.X", "normal.Y", "normal.Z", "distance", "id.face", "id.patch"}
         assert attributes["exactff scene"] == "cornell_box.obj" and len(attributes["exactff scene hash"]) == 16

@@ -1,20 +1,15 @@
 // Fronts of different patches that lie on each other: what is found, what is said of it, and what is no overlap.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "exactff/models.h"
+#include "exactff/receiver.h"
 #include "exactff/scene_files.h"
 #include "exactff/slips.h"
-#include "generate/plain_scene.h"
+#include "support/shapes.h"
+#include "support/test.h"
 
 namespace exactff::slips {
 namespace {
 
-using generate::PlainScene;
+using Kinds = std::vector<Kind>;
 
 Scene regression_scene(const std::string& name) {
   return read_obj(std::string(EXACTFF_DATA_DIR "/regression/") + name + ".obj");
@@ -33,11 +28,7 @@ std::string words_in(const Scene& scene, Kind kind) {
   return "nothing";
 }
 
-std::vector<Overlap> all_overlaps(const Scene& scene) {
-  std::vector<Selection> patches;
-  for (std::size_t p = 0; p < scene.patches().size(); ++p) patches.push_back({static_cast<PatchId>(p), {}, scene.id()});
-  return overlapping_fronts(scene, patches);
-}
+std::vector<Overlap> all_overlaps(const Scene& scene) { return overlapping_fronts(scene, all_patches(scene)); }
 
 // Looks up; its corners are those of a box in the plane z.
 void add_tile(PlainScene& scene, const std::string& name, double x, double y, double width, double depth,
@@ -86,14 +77,6 @@ TEST(Overlaps, AreNotBetweenNeighboursThatTouch) {
   EXPECT_TRUE(all_overlaps(models::make_scene("teapot:segments=4")).empty());
   EXPECT_TRUE(
       all_overlaps(read_scene(EXACTFF_DATA_DIR "/scenes/cornell_box.obj", {.patches = PatchMode::kFaces})).empty());
-}
-
-// Opposite fronts are twin faces, or a thing that stands on the floor.
-TEST(Overlaps, AreNotBetweenOppositeFronts) {
-  PlainScene plain;
-  add_tile(plain, "floor", 0, 0, 4, 4);
-  plain.add_ring(plain.patch("foot"), {{1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}});
-  EXPECT_TRUE(all_overlaps(generate::build(plain)).empty());
 }
 
 TEST(Overlaps, OfTheSameCornersAreDoubledFaces) {
@@ -149,65 +132,100 @@ TEST(Overlaps, AStrayFaceOutsideTurnsNoRoom) {
   }
 }
 
-// The ground outside would see five walls, but fifteen pairs of them would no longer see each other.
-TEST(Overlaps, ARoomAboveTheGroundIsNotTurned) {
-  std::istringstream in(
-      "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\nv 0 0 2.5\nv 4 0 2.5\nv 4 3 2.5\nv 0 3 2.5\n"
-      "v -50 -50 -1\nv 50 -50 -1\nv 50 50 -1\nv -50 50 -1\n"
-      "g floor\nf 1 2 3 4\ng ceiling\nf 8 7 6 5\ng south\nf 5 6 2 1\ng east\nf 6 7 3 2\ng north\nf 7 8 4 3\n"
-      "g west\nf 8 5 1 4\ng ground\nf 9 10 11 12\n");
-  const Scene scene = read_obj(in, "s.obj");
-  EXPECT_EQ(kinds_in(scene), Names{"unseen-front"});
-  EXPECT_EQ(diagnose(scene)[0].flag, "");
+// --- What closed solids bury, and what touches without being buried ---
+
+void add_floor(PlainScene& scene) {
+  scene.add_ring(scene.patch("floor"), {{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}});
 }
 
-// Turned round, a carpet that looks down would lie on the floor as a second front.
-TEST(Overlaps, NoFrontIsTurnedOntoAnother) {
+// Of those that are about contacts.
+Kinds kinds_of_touch(const PlainScene& plain) {
+  Kinds kinds;
+  for (const Finding& finding : diagnose(generate::build(plain))) {
+    if (finding.kind >= Kind::kOpenFloor && finding.kind <= Kind::kOverlappingSolids) kinds.push_back(finding.kind);
+  }
+  return kinds;
+}
+
+TEST(BuriedParts, AreListedWithTheirAreas) {
   PlainScene plain;
-  add_tile(plain, "floor", 0, 0, 4, 4);
-  plain.add_ring(plain.patch("carpet"), {{1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}});
-  plain.add_ring(plain.patch("wall"), {{0, 0, 0}, {0, 4, 0}, {0, 4, 4}, {0, 0, 4}});
+  add_box(plain, "room", {0, 0, 0}, {4, 4, 4}, Fronts::kInside);
+  add_box(plain, "lower", {1, 1, 0}, {3, 3, 1});
+  add_box(plain, "upper", {2, 2, 1}, {4, 3, 2});
   const Scene scene = generate::build(plain);
-  EXPECT_EQ(words_in(scene, Kind::kUnseenFront),
-            "no other patch sees the front of 'carpet', as far as rays can tell (receivers there see nothing, and it "
-            "lights nothing); turning it round does not help; check the place");
+  struct Expected {
+    std::string patch, under;
+    double area;
+  };
+  std::vector<Expected> expected{{"room", "lower", 4},  {"lower", "room", 4}, {"lower", "upper", 1},
+                                 {"upper", "lower", 1}, {"room", "upper", 1}, {"upper", "room", 1}};
+  const std::vector<Contact> found = buried_parts(scene);
+  EXPECT_EQ(found.size(), expected.size());
+  EXPECT_TRUE(std::ranges::is_sorted(found, std::greater{}, &Contact::area));
+  for (const auto& [patch, under, area] : expected) {
+    const auto one = std::ranges::find_if(found, [&, p = patch, u = under](const Contact& contact) {
+      return scene.name_of(contact.patch) == p && scene.name_of(contact.under) == u;
+    });
+    ASSERT_NE(one, found.end()) << patch << " under " << under;
+    EXPECT_NEAR(one->area, area, 1e-12);
+    EXPECT_NEAR(one->share, area / (patch == "room" ? 96.0 : patch == "lower" ? 16.0 : 10.0), 1e-12);
+  }
+  EXPECT_EQ(kinds_of_touch(plain), Kinds{});
 }
 
-// Walls whose vn all contradict a winding under which they see each other.
-TEST(Overlaps, NormalsThatWouldDarkenARoomAreDoubted) {
-  std::istringstream in(
-      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nvn 0 0 -1\nvn 0 0 1\n"
-      "g floor\nf 1//1 2//1 3//1 4//1\ng lid\nf 8//2 7//2 6//2 5//2\n");
-  const Scene scene = read_obj(in, "s.obj");
-  const std::string words = words_in(scene, Kind::kNormals);
-  EXPECT_NE(words.find("; turning them round may hide patches from each other: look first which is right"),
-            std::string::npos)
-      << words;
-  EXPECT_EQ(diagnose(scene)[0].flag, "");
-}
-
-// A window on a wall, asked from another point of the wall: nothing is gained by a window that looks out.
-TEST(Overlaps, NoSourceIsTurnedAwayFromItsRoom) {
-  const Scene scene = regression_scene("window_on_a_wall");
-  const std::vector<Receiver> receivers = grid_receivers(scene, scene.select("east"), {2, 2});
-  const Selection window = scene.select("window");
-  const std::vector<Problem> warnings = warnings_of_dark_sources(scene, receivers, std::span(&window, 1));
-  ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_EQ(warnings[0].message().find("--flip"), std::string::npos) << warnings[0].message();
-  EXPECT_EQ(advice_to_flip(scene, std::span(&window, 1)), "");
-}
-
-TEST(Overlaps, BetweenSelectionsAloneAreFound) {
+TEST(TouchFindings, TellBottomsOnOpenFloors) {
   PlainScene plain;
-  add_tile(plain, "floor", 0, 0, 4, 4);
-  add_tile(plain, "carpet", 1, 1, 1, 1);
-  add_tile(plain, "carpet", 3, 3, 2, 1);
-  const Scene scene = generate::build(plain);
-  const std::vector<Selection> first{scene.select("floor"), scene.select("carpet:1")};
-  ASSERT_EQ(overlapping_fronts(scene, first).size(), 1U);
-  EXPECT_NEAR(overlapping_fronts(scene, first)[0].area, 1.0, 1e-12);
-  const std::vector<Selection> alone{scene.select("carpet:1"), scene.select("carpet:2")};
-  EXPECT_TRUE(overlapping_fronts(scene, alone).empty());
+  add_floor(plain);
+  add_box(plain, "box", {0, 0, 0}, {1, 1, 1});
+  EXPECT_EQ(kinds_of_touch(plain), Kinds{Kind::kOpenFloor});
+}
+
+TEST(TouchFindings, TellBlocksWithoutBottoms) {
+  PlainScene plain;
+  add_floor(plain);
+  add_box(plain, "block", {0, 0, 0}, {1, 1, 1}, Fronts::kOutside, false);
+  EXPECT_EQ(kinds_of_touch(plain), Kinds{Kind::kNoBottom});
+  PlainScene above;
+  add_floor(above);
+  add_box(above, "block", {0, 0, 1}, {1, 1, 2}, Fronts::kOutside, false);
+  EXPECT_EQ(kinds_of_touch(above), Kinds{});
+}
+
+TEST(TouchFindings, TellContactsThatMissByLittle) {
+  for (const double gap : {1e-13, 1e-7, -1e-13, -1e-7}) {
+    PlainScene plain;
+    add_box(plain, "lower", {0, 0, 0}, {2, 2, 1});
+    add_box(plain, "upper", {0.5, 0.5, 1 + gap}, {1, 1, 2});
+    EXPECT_EQ(kinds_of_touch(plain), Kinds{Kind::kNearContact}) << gap;
+    EXPECT_TRUE(buried_parts(generate::build(plain)).empty());
+  }
+  PlainScene apart;
+  add_box(apart, "lower", {0, 0, 0}, {2, 2, 1});
+  add_box(apart, "upper", {0.5, 0.5, 1.001}, {1, 1, 2});
+  EXPECT_EQ(kinds_of_touch(apart), Kinds{});
+}
+
+TEST(TouchFindings, TellSolidsThatOverlapHoweverTheyDo) {
+  const std::array<std::array<Vec3, 2>, 4> others{{
+      {{{1, 1, 1}, {3, 3, 3}}},        // corners inside
+      {{{0.5, 0.5, -1}, {1, 1, 3}}},   // through it
+      {{{1, 0, 0}, {3, 2, 2}}},        // along it
+      {{{0.5, 0.5, 0.5}, {1, 1, 1}}},  // within it
+  }};
+  for (const auto& [low, high] : others) {
+    PlainScene plain;
+    add_box(plain, "one", {0, 0, 0}, {2, 2, 2});
+    add_box(plain, "other", low, high);
+    EXPECT_EQ(kinds_of_touch(plain), Kinds{Kind::kOverlappingSolids}) << low.x << ' ' << high.x;
+  }
+}
+
+TEST(TouchFindings, LeaveAloneWhatStandsInAHollow) {
+  PlainScene plain;
+  add_box(plain, "shell", {-1, -1, -1}, {5, 5, 5});
+  add_box(plain, "room", {0, 0, 0}, {4, 4, 4}, Fronts::kInside);
+  add_box(plain, "box", {1, 1, 1}, {2, 2, 2});
+  EXPECT_EQ(kinds_of_touch(plain), Kinds{});
 }
 
 }  // namespace

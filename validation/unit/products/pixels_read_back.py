@@ -16,6 +16,8 @@ import tempfile
 import numpy
 import OpenImageIO as oiio
 
+from images_read_back import read
+
 CAMERA = "--eye 278 273 -800 --look 278 273 0 --fov 39.3 --size 20x16".split()
 LAYERS = ["position.X", "position.Y", "position.Z", "normal.X", "normal.Y", "normal.Z"]
 DYADIC = """mtllib dyadic.mtl
@@ -23,15 +25,6 @@ v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 3\nv 2 1 3\nv 2 2 3\nv 1 2 3\nv 1 2 1\
 usemtl white\ng floor\nf 1 2 3 4\ng board\nf 9 10 11 12\nusemtl lamp\ng lamp\nf 8 7 6 5
 """
 DYADIC_MATERIALS = "newmtl white\nKd .5 .25 .7\nnewmtl lamp\nKd .1 .1 .1\nKe 3 2 1\n"
-
-
-def read(path):
-    image = oiio.ImageInput.open(str(path))
-    spec = image.spec()
-    found = {}
-    for at, (name, kind) in enumerate(zip(spec.channelnames, spec.channelformats or [spec.format] * spec.nchannels)):
-        found[name] = numpy.asarray(image.read_image(at, at + 1, "uint" if str(kind) == "uint" else "float"))[:, :, 0]
-    return found, spec
 
 
 def write(path, parts, tile=0, window=None):

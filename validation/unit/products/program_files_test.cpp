@@ -1,19 +1,9 @@
 // Files of matrices for other programs, each read back.
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "exactff/matrix.h"
 #include "exactff/radiosity.h"
 #include "exactff/scene_files.h"
 #include "matrix/other_programs.h"
-#include "support/program.h"
+#include "support/test.h"
 
 namespace exactff::matrix {
 namespace {
@@ -21,13 +11,13 @@ namespace {
 class ProgramFiles : public testing::Test {
  protected:
   void SetUp() override {
-    const validation::ProgramRun run = validation::run_exactff(
-        {"matrix",     scene_,        "--balance",   "--accuracy",      "1e-3",        "--openfoam", file("F"),
-         "--calculix", file("m.vwf"), "--moose",     file("moose.txt"), "--nek",       file("nek"),  "--esatan",
-         file("e.gr"), "--view3d",    file("v.out"), "--energyplus",    file("z.idf"), "--exchange", file("b.csv"),
-         "-o",         file("m.csv")});
+    const ProgramRun run = run_exactff({"matrix",          scene_,        "--balance",    "--accuracy",  "1e-3",
+                                        "--openfoam",      file("F"),     "--calculix",   file("m.vwf"), "--moose",
+                                        file("moose.txt"), "--nek",       file("nek"),    "--esatan",    file("e.gr"),
+                                        "--view3d",        file("v.out"), "--energyplus", file("z.idf"), "--exchange",
+                                        file("b.csv"),     "-o",          file("m.csv")});
     ASSERT_EQ(run.exit_code, 0) << run.error;
-    EXPECT_NE(run.output.find("(without bounds and names; patches must be in the order of"), std::string::npos);
+    EXPECT_HOLDS(run.output, "(without bounds and names; patches must be in the order of");
     const table::Table table = table::read(file("m.csv"));
     const std::vector<double>& balanced = table.numbers(table.column("balanced").value());
     for (std::size_t i = 0; i < kPatches; ++i) {
@@ -46,7 +36,7 @@ class ProgramFiles : public testing::Test {
 
   static constexpr std::size_t kPatches = 8;
   const std::string scene_ = EXACTFF_DATA_DIR "/scenes/formats/test4.vs3";
-  const validation::TemporaryDirectory folder_;
+  const TemporaryDirectory folder_;
   std::vector<double> values_;  // of the balanced matrix
 };
 
@@ -57,7 +47,7 @@ TEST_F(ProgramFiles, HoldTheBalancedMatrixToTheLastBit) {
   const std::vector<double> six_decimals = read("v.out");
   for (std::size_t k = 0; k < values_.size(); ++k) EXPECT_NEAR(six_decimals[k], values_[k], 5.01e-7);
 
-  std::istringstream moose(validation::text_of(file("moose.txt")));
+  std::istringstream moose(text_of(file("moose.txt")));
   std::string line;
   std::getline(moose, line);
   EXPECT_EQ(line, "subdomain_id,vf_to_1,vf_to_2,vf_to_3,vf_to_4,vf_to_5,vf_to_6,vf_to_7,vf_to_8");
@@ -93,16 +83,16 @@ TEST_F(ProgramFiles, HoldTheBalancedMatrixToTheLastBit) {
 // A patch of the mesh has one coarse face; by --patches faces, each of its faces is one.
 TEST_F(ProgramFiles, HoldTheAgglomerationOfOpenFoam) {
   const auto lists_of = [&](const std::vector<std::string>& flags) {
-    std::vector<std::string> all{"matrix", scene_, "--accuracy", "0.1", "--openfoam", file("F"), "--force"};
-    all.insert(all.end(), flags.begin(), flags.end());
-    EXPECT_EQ(validation::run_exactff(all).exit_code, 0);
-    const std::string text = validation::text_of(file("finalAgglom"));
+    EXPECT_EQ(run_exactff(joined({"matrix", scene_, "--accuracy", "0.1", "--openfoam", file("F"), "--force"}, flags))
+                  .exit_code,
+              0);
+    const std::string text = text_of(file("finalAgglom"));
     return text.substr(text.find("}\n\n") + 3);
   };
   EXPECT_EQ(lists_of({"--from", "srf-1,srf-7", "--to", "srf-1,srf-7"}), "2\n(\n1(0)\n3(0 0 0)\n)\n");
   EXPECT_EQ(lists_of({"--patches", "faces", "--from", "srf-1:1,srf-7:*", "--to", "srf-1:1,srf-7:*"}),
             "2\n(\n1(0)\n3(0 1 2)\n)\n");
-  const std::string map = validation::text_of(file("mapDist"));
+  const std::string map = text_of(file("mapDist"));
   EXPECT_EQ(map.substr(map.find("}\n\n") + 3), "4\n1(4(0 1 2 3))\n1(4(0 1 2 3))\n0 0\n0()\n0()\n");
 }
 
@@ -116,7 +106,7 @@ TEST_F(ProgramFiles, HoldTheConductors) {
       if (g > 0.0) expected[{i + 1, j + 1}] = g;
     }
   }
-  std::istringstream lines(validation::text_of(file("e.gr")));
+  std::istringstream lines(text_of(file("e.gr")));
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with('#')) continue;
     std::size_t i = 0, j = 0;
@@ -125,7 +115,7 @@ TEST_F(ProgramFiles, HoldTheConductors) {
     found[{i, j}] = g;
   }
   EXPECT_EQ(found, expected);
-  EXPECT_NE(validation::text_of(file("e.gr")).find("# node 8: 'srf-8'\n# node 9: '(back)'\n"), std::string::npos);
+  EXPECT_HOLDS(text_of(file("e.gr")), "# node 8: 'srf-8'\n# node 9: '(back)'\n");
 }
 
 }  // namespace

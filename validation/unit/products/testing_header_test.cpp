@@ -1,13 +1,10 @@
 // The assertions that the library installs, made to fail.
-#include <gtest/gtest-spi.h>
-#include <gtest/gtest.h>
+#include "support/test.h"
 
-#include <cmath>
-#include <string>
+#include <gtest/gtest-spi.h>
 
 #include "exactff/exact.h"
 #include "exactff/testing.h"
-#include "support/program.h"
 
 namespace exactff {
 namespace {
@@ -52,7 +49,7 @@ TEST(FormFactorNear, EndsTheTestIfAsserted) {
 
 class FormFactorsNear : public ::testing::Test {
  protected:
-  validation::TemporaryDirectory directory_;
+  TemporaryDirectory directory_;
   std::string file_ = directory_
                           .write("truth.csv",
                                  "receiver,x,y,z,nx,ny,nz,source,exact\n"

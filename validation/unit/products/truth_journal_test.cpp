@@ -1,18 +1,11 @@
-// The journals of truth files: interrupted runs, journals torn, tampered with or of other requests, and what must not
-// be overwritten.
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <filesystem>
-#include <functional>
-#include <string>
-#include <utility>
+// The journals of truth files: interrupted runs, journals torn, tampered with or of other requests, shards.
+#include <atomic>
 
 #include "exactff/version.h"
+#include "jobs/blocks.h"
+#include "jobs/compute.h"
 #include "jobs/journal.h"
-#include "support/complaint.h"
-#include "support/folder.h"
-#include "support/program.h"
+#include "support/test.h"
 #include "truth/rows.h"
 #include "unit/products/truth_support.h"
 
@@ -21,37 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace jobs;
-using validation::complaint;
-using validation::text_of;
-using validation::write_text;
-
-TEST_F(Truth, BytesDoNotDependOnThreads) {
-  const Summary one = write(request(10), file_);
-  const std::string whole = text_of(file_);
-  Request asked = request(10);
-  asked.threads = 3;
-  const Summary three = write(asked, file_, Existing::kReplace);
-  EXPECT_EQ(text_of(file_), whole);
-  EXPECT_EQ(one.rows, 200U);
-  EXPECT_EQ(one.rows_by_status, three.rows_by_status);
-  EXPECT_EQ(one.with(Status::kCertified) + one.with(Status::kZero), 200U);
-  EXPECT_GT(one.with(Status::kZero), 0U);
-  expect_only({"truth.csv"});
-}
-
-TEST_F(Truth, AnInterruptedRunGoesOn) {
-  write(request(10), file_);
-  const std::string whole = text_of(file_);
-  fs::remove(file_);
-  for (const int rows : {1, 2, 40, 100, 1, 30}) interrupt(request(10), rows);
-  expect_only({"truth.csv.part"});
-  EXPECT_GE(rows_in_journal(request(10)), 120U);
-  const Summary summary = write(request(10), file_, Existing::kResume);
-  EXPECT_EQ(text_of(file_), whole);
-  EXPECT_GT(summary.resumed, 110U);
-  EXPECT_LT(summary.resumed, 200U);
-  expect_only({"truth.csv"});
-}
 
 // Blocks of few rows, not in order, so that a few bytes can be damaged in many ways.
 std::string small_journal(const Rows& rows, const fs::path& file) {
@@ -102,42 +64,14 @@ TEST_F(Truth, ADamagedBlockIsComputedAgainAndTheOthersAreNot) {
   }
 }
 
-TEST_F(Truth, BlocksThatDoNotBelongAreLeftOut) {
-  const Rows rows(shard(10, 2, 3));
-  std::string line;
-  Rows::Results results;
-  append(rows, 64, line, results);
-  write_text(file_, "");
-  {
-    RowJournal journal(file_, rows, Existing::kResume, {});
-    journal.append({64, 1}, line);
-    journal.append({64, 1}, line);          // doubled: counts once
-    journal.append({0, 1}, line);           // of another shard
-    journal.append({127, 2}, line + line);  // of two chunks
-    journal.append({66, 2}, line);          // fewer rows than it claims
-    journal.append({65, 0}, "");
-    journal.append({1000000, 1}, line);
-  }
-  std::string note;
-  RowHooks hooks;
-  hooks.note = [&](const std::string& text) { note = text; };
-  EXPECT_EQ(write(shard(10, 2, 3), file_, Existing::kResume, hooks).resumed, 1U);
-  EXPECT_NE(note.find("5 blocks cannot be used here"), std::string::npos) << note;
-  const std::string resumed = text_of(file_);
-  write(shard(10, 2, 3), file_, Existing::kReplace);
-  EXPECT_EQ(text_of(file_), resumed);
-}
-
 TEST_F(Truth, NobodysWorkIsDestroyed) {
   write(request(2), file_);
-  EXPECT_NE(refusal(request(2), Existing::kRefuse).find("truth.csv: already exists (it may hold hours of work); "),
-            std::string::npos);
+  EXPECT_HOLDS(refusal(request(2), Existing::kRefuse), "truth.csv: already exists (it may hold hours of work); ");
   EXPECT_EQ(refusal(request(2), Existing::kReplace), "");
   fs::remove(file_);
   interrupt(request(10), 100);
-  EXPECT_NE(
-      refusal(request(10), Existing::kRefuse).find("truth.csv.part: contains the finished work of an interrupted run"),
-      std::string::npos);
+  EXPECT_HOLDS(refusal(request(10), Existing::kRefuse),
+               "truth.csv.part: contains the finished work of an interrupted run");
   EXPECT_EQ(refusal(request(10), Existing::kReplace), "");
   expect_only({"truth.csv"});
 }
@@ -149,35 +83,21 @@ TEST_F(Truth, ACompleteFileIsLeftAsItIs) {
   EXPECT_EQ(fs::last_write_time(file_), written);
   EXPECT_EQ(again.resumed, first.rows);
   EXPECT_EQ(again.rows_by_status, first.rows_by_status);
-  EXPECT_NE(refusal(request(4), Existing::kResume).find("truth.csv:1: belongs to a different request"),
-            std::string::npos);
+  EXPECT_HOLDS(refusal(request(4), Existing::kResume), "truth.csv:1: belongs to a different request");
   write_text(file_, text_of(file_).substr(0, fs::file_size(file_) - 5));
-  EXPECT_NE(refusal(request(3), Existing::kResume).find("truth.csv: is damaged: 17 of 18 rows can be read"),
-            std::string::npos)
-      << refusal(request(3), Existing::kResume);
+  EXPECT_HOLDS(refusal(request(3), Existing::kResume), "truth.csv: is damaged: 17 of 18 rows can be read");
 }
 
 TEST_F(Truth, AForeignFileIsNoJournal) {
   for (const char* text : {"dear diary\n", "\n"}) {
     for (const Existing existing : {Existing::kRefuse, Existing::kResume, Existing::kReplace}) {
       write_text(journal_, text);
-      EXPECT_NE(refusal(request(2), existing).find("truth.csv.part: already exists, and exactff did not write it"),
-                std::string::npos);
+      EXPECT_HOLDS(refusal(request(2), existing), "truth.csv.part: already exists, and exactff did not write it");
       EXPECT_EQ(text_of(journal_), text);
     }
   }
   write_text(journal_, "#");  // may be the beginning of our journal
   EXPECT_EQ(refusal(request(2), Existing::kResume), "");
-}
-
-TEST_F(Truth, AJournalOfAnotherVersionIsOnlyReplaced) {
-  for (const char* text : {"# exactff 0.0.1 truth\nreceiver\n", "exactff journal 1, version 0.0.1\n"}) {
-    write_text(journal_, text);
-    EXPECT_NE(refusal(request(2), Existing::kResume).find("truth.csv.part: was written by another version of exactff"),
-              std::string::npos);
-    EXPECT_EQ(text_of(journal_), text);
-  }
-  EXPECT_EQ(refusal(request(2), Existing::kReplace), "");
 }
 
 // The request of a journal, changed in every way that affects its rows.
@@ -204,21 +124,20 @@ TEST_F(Truth, AJournalOfAnotherRequestIsNamedWithItsDifference) {
     Request changed = request(10);
     change(changed);
     const std::string told = refusal(changed, Existing::kResume);
-    EXPECT_NE(told.find(message), std::string::npos) << told;
-    EXPECT_NE(told.find("rows of different requests must not be mixed"), std::string::npos) << told;
+    EXPECT_HOLDS(told, message);
+    EXPECT_HOLDS(told, "rows of different requests must not be mixed");
     EXPECT_EQ(text_of(journal_), journal);
   }
   std::string old_version = journal;
   old_version.replace(old_version.find(kVersion), std::string(kVersion).size(), "0.0.9");
   write_text(journal_, old_version);
-  EXPECT_NE(refusal(request(10), Existing::kResume).find("was written by another version"), std::string::npos);
+  EXPECT_HOLDS(refusal(request(10), Existing::kResume), "was written by another version");
 }
 
 TEST_F(Truth, TwoProcessesCannotShareAJournal) {
   const RowJournal journal(file_, Rows(request(2)), Existing::kRefuse, {});
   for (const Existing existing : {Existing::kRefuse, Existing::kResume, Existing::kReplace}) {
-    EXPECT_NE(refusal(request(2), existing).find("truth.csv.part: another process is working on it"),
-              std::string::npos);
+    EXPECT_HOLDS(refusal(request(2), existing), "truth.csv.part: another process is working on it");
   }
 }
 
@@ -240,6 +159,116 @@ TEST_F(Truth, TheFileGoesWhereALinkLeads) {
 TEST_F(Truth, ARunThatFinishedNoRowLeavesNothing) {
   interrupt(request(2), 0);
   expect_only({});
+}
+
+// --- The shards of a truth file: which rows belong to each, and merging them ---
+
+namespace fs = std::filesystem;
+using namespace jobs;
+
+class TruthShards : public Truth {
+ protected:
+  fs::path part(std::uint64_t number) const { return directory_.path() / ("truth." + std::to_string(number) + ".csv"); }
+  std::vector<fs::path> write_shards(int n, std::uint64_t count) const {
+    std::vector<fs::path> parts;
+    for (std::uint64_t number = 1; number <= count; ++number) {
+      parts.push_back(part(number));
+      write(shard(n, number, count), parts.back(), Existing::kReplace);
+    }
+    return parts;
+  }
+  std::string merge_refusal(const std::vector<fs::path>& parts) const {
+    return complaint([&] { truth::merge(parts, directory_.path() / "merged.csv"); });
+  }
+};
+
+TEST_F(TruthShards, MergedAreTheBytesOfOneRun) {
+  const Summary one = write(request(10), file_);
+  for (const std::uint64_t count : {2U, 3U, 4U, 7U}) {  // of 4 chunks, so that some shards have none
+    std::vector<fs::path> parts = write_shards(10, count);
+    std::reverse(parts.begin(), parts.end());
+    const fs::path merged = directory_.path() / "merged.csv";
+    const Summary summary = truth::merge(parts, merged, Existing::kReplace);
+    EXPECT_EQ(text_of(merged), text_of(file_));
+    EXPECT_EQ(summary.rows_by_status, one.rows_by_status);
+  }
+}
+
+TEST_F(TruthShards, WhatDoesNotBelongTogetherIsRefused) {
+  const std::vector<fs::path> parts = write_shards(10, 3);
+  const auto expect = [&](const std::vector<fs::path>& named, const std::string& message) {
+    const std::string told = merge_refusal(named);
+    EXPECT_HOLDS(told, message);
+    EXPECT_FALSE(fs::exists(directory_.path() / "merged.csv"));
+  };
+  expect({parts[0], parts[2]}, "of 3 shards these are missing: 2 (every row is needed)");
+  expect({parts[0]}, "these are missing: 2 and 3");
+  expect({}, "no shard is named");
+  expect({parts[0], parts[1], parts[2], parts[1]}, "is shard 2, and so is ");
+  expect({parts[0], directory_.path() / "nothing"}, "nothing: cannot be read: No such file");
+  write(request(10), file_);
+  expect({parts[0], parts[1], file_}, "truth.csv: is not a shard of a table");
+  write(shard(10, 3, 4), file_, Existing::kReplace);
+  expect({parts[0], parts[1], file_}, "is one of 4 shards");
+  write(shard(9, 3, 3), file_, Existing::kReplace);
+  expect({parts[0], parts[1], file_}, "truth.csv:1: belongs to a different request: it has receivers hash ");
+}
+
+TEST_F(TruthShards, DamageIsFoundWhereverItIs) {
+  const std::vector<fs::path> parts = write_shards(10, 2);
+  const std::string sound = text_of(parts[0]);
+  const std::size_t rows = sound.find("\n# rows 0+64") + 1;
+  for (std::size_t at = rows; at < sound.size(); at += 97) {
+    std::string damaged = sound;
+    damaged[at] ^= 1;
+    write_text(parts[0], damaged);
+    EXPECT_HOLDS(merge_refusal(parts), "truth.1.csv: is damaged: ") << at;
+    write_text(parts[0], sound.substr(0, at));
+    EXPECT_HOLDS(merge_refusal(parts), "truth.1.csv: is damaged: ") << at;
+  }
+  write_text(parts[0], sound + "more");
+  EXPECT_HOLDS(merge_refusal(parts), "is damaged: ");
+}
+
+TEST_F(TruthShards, InterruptionsDoNotShow) {
+  const std::vector<fs::path> parts = write_shards(10, 2);
+  for (const int rows : {30, 3, 50}) {
+    std::atomic<int> left = rows;
+    RowHooks hooks;
+    hooks.cancelled = [&left] { return left-- <= 0; };
+    EXPECT_THROW(write(shard(10, 1, 2), file_, Existing::kResume, hooks), Cancelled);
+  }
+  EXPECT_HOLDS(merge_refusal({journal_, parts[1]}), "is the journal of an unfinished run");
+  write(shard(10, 1, 2), file_, Existing::kResume);
+  EXPECT_EQ(text_of(file_), text_of(parts[0]));
+  const Summary again = write(shard(10, 1, 2), file_, Existing::kResume);
+  EXPECT_EQ(again.resumed, again.rows);
+}
+
+TEST_F(Truth, BlocksThatDoNotBelongAreLeftOut) {
+  const Rows rows(shard(10, 2, 3));
+  std::string line;
+  Rows::Results results;
+  append(rows, 64, line, results);
+  write_text(file_, "");
+  {
+    RowJournal journal(file_, rows, Existing::kResume, {});
+    journal.append({64, 1}, line);
+    journal.append({64, 1}, line);          // doubled: counts once
+    journal.append({0, 1}, line);           // of another shard
+    journal.append({127, 2}, line + line);  // of two chunks
+    journal.append({66, 2}, line);          // fewer rows than it claims
+    journal.append({65, 0}, "");
+    journal.append({1000000, 1}, line);
+  }
+  std::string note;
+  RowHooks hooks;
+  hooks.note = [&](const std::string& text) { note = text; };
+  EXPECT_EQ(write(shard(10, 2, 3), file_, Existing::kResume, hooks).resumed, 1U);
+  EXPECT_HOLDS(note, "5 blocks cannot be used here");
+  const std::string resumed = text_of(file_);
+  write(shard(10, 2, 3), file_, Existing::kReplace);
+  EXPECT_EQ(text_of(file_), resumed);
 }
 
 }  // namespace

@@ -1,24 +1,14 @@
 // A room, requests for truth files of it, and runs that are interrupted, for the tests of truth files.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <atomic>
-#include <cstdint>
-#include <filesystem>
-#include <set>
-#include <sstream>
-#include <string>
-#include <utility>
 
 #include "exactff/scene_files.h"
 #include "exactff/truth.h"
 #include "jobs/blocks.h"
 #include "jobs/compute.h"
 #include "jobs/journal.h"
-#include "support/complaint.h"
-#include "support/folder.h"
-#include "support/program.h"
+#include "support/test.h"
 #include "truth/rows.h"
 
 namespace exactff::truth {
@@ -72,7 +62,7 @@ class Truth : public testing::Test {
   }
 
   std::string refusal(Request asked, Existing existing) const {
-    return validation::complaint([&] { write(std::move(asked), file_, existing); });
+    return complaint([&] { write(std::move(asked), file_, existing); });
   }
 
   std::uint64_t rows_in_journal(Request asked) const {
@@ -80,12 +70,10 @@ class Truth : public testing::Test {
     const jobs::RowJournal journal(file_, rows, Existing::kResume, {});
     return rows.shard_rows() - jobs::Schedule(rows, journal.blocks()).rows();
   }
-  void expect_only(const std::set<std::string>& names) const {
-    EXPECT_EQ(validation::names_in(directory_.path()), names);
-  }
+  void expect_only(const std::set<std::string>& names) const { EXPECT_EQ(names_in(directory_.path()), names); }
 
   const Scene scene_ = room();
-  const validation::TemporaryDirectory directory_{validation::memory_folder()};
+  const TemporaryDirectory directory_{memory_folder()};
   const std::filesystem::path file_ = directory_.path() / "truth.csv";
   const std::filesystem::path journal_ = jobs::journal_of(file_);
 };

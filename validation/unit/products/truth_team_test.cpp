@@ -1,19 +1,11 @@
 // Truth files written by several processes, which are threads here.
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <chrono>
-#include <cstddef>
 #include <exception>
-#include <filesystem>
-#include <functional>
-#include <set>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "jobs/team.h"
-#include "support/program.h"
+#include "support/test.h"
 #include "support/thread_team.h"
 #include "truth/team.h"
 #include "unit/products/truth_support.h"
@@ -24,7 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace jobs;
 using validation::Mailbox;
-using validation::text_of;
 using validation::ThreadTeam;
 
 class TruthTeam : public Truth {
@@ -118,26 +109,6 @@ TEST_F(TruthTeam, AnInterruptedTeamKeepsWhatItFinished) {
   EXPECT_EQ(text_of(file_), whole);
 }
 
-// At the interruption, no follower has finished a whole chunk; only the followers have their rows.
-TEST_F(TruthTeam, ALeaderThatStopsTakesWhatOthersHaveInHand) {
-  std::atomic<int> asked = 0;
-  RowHooks leaders, followers;
-  const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
-  followers.cancelled = [&] {
-    pause();
-    ++asked;
-    return false;
-  };
-  leaders.cancelled = [&] {
-    pause();
-    return asked > 90 * kQuestions;
-  };
-  const auto thrown = run(
-      4, [this](int) { return request(40); }, leaders, followers);
-  EXPECT_EQ(message_of<Cancelled>(thrown), "cancelled");
-  EXPECT_GE(rows_in_journal(request(40)), 80U);  // rows of the followers; the leader adds some
-}
-
 TEST_F(TruthTeam, AProcessThatSeesOtherFilesIsNamed) {
   const auto thrown = run(3, [this](int rank) {
     Request asked = request(40);
@@ -145,9 +116,7 @@ TEST_F(TruthTeam, AProcessThatSeesOtherFilesIsNamed) {
     return asked;
   });
   const std::string told = message_of<InputError>(thrown);
-  EXPECT_NE(told.find("on rank 2 (here): the program, the scene or the receivers differ from those of rank 0"),
-            std::string::npos)
-      << told;
+  EXPECT_HOLDS(told, "on rank 2 (here): the program, the scene or the receivers differ from those of rank 0");
 }
 
 }  // namespace

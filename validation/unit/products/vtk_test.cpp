@@ -2,22 +2,15 @@
 // files with VTK.
 #include "vtk/vtk.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <fstream>
-#include <set>
-
 #include "files/numpy.h"
-#include "generate/plain_scene.h"
-#include "support/program.h"
 #include "support/random_scenes.h"
+#include "support/shapes.h"
+#include "support/test.h"
 
 namespace exactff::vtk {
 namespace {
 
 namespace fs = std::filesystem;
-using generate::Random;
 using validation::RandomFamily;
 
 std::vector<FaceId> faces_with_area(const Scene& scene) {
@@ -29,7 +22,7 @@ std::vector<FaceId> faces_with_area(const Scene& scene) {
 }
 
 // Cells of grids, points on faces, and the scene's own receiver.
-std::vector<Receiver> receivers_of(const Scene& scene, const generate::PlainScene& plain) {
+std::vector<Receiver> receivers_of(const Scene& scene, const PlainScene& plain) {
   const std::vector<FaceId> faces = faces_with_area(scene);
   std::vector<Receiver> receivers = grid_receivers(scene, faces, {3, 2});
   const std::vector<Receiver> centres = centre_receivers(scene, faces);
@@ -47,10 +40,10 @@ std::vector<double> any_doubles(std::size_t count, Random& random) {
 }
 
 std::string parsed(const fs::path& folder) {
-  return validation::run_program("/usr/bin/env", {"python3", "-B", EXACTFF_PARSE_VTK, folder.string()}).output;
+  return run_program("/usr/bin/env", {"python3", "-B", EXACTFF_PARSE_VTK, folder.string()}).output;
 }
 
-void write_with_values(const fs::path& file, const generate::PlainScene& plain, Random& random) {
+void write_with_values(const fs::path& file, const PlainScene& plain, Random& random) {
   const Scene scene = generate::build(plain);
   const std::vector<Receiver> receivers = receivers_of(scene, plain);
   const std::vector<double> values = any_doubles(receivers.size(), random);
@@ -61,7 +54,7 @@ void write_with_values(const fs::path& file, const generate::PlainScene& plain, 
 
 // One run of the parser for all families: its start takes longer than the files of one.
 TEST(VtkFiles, OfRandomScenesAreSoundXml) {
-  const validation::TemporaryDirectory directory(validation::memory_folder());
+  const TemporaryDirectory directory(memory_folder());
   for (const RandomFamily& family : validation::random_families()) {
     for (std::uint64_t i = 0; i < validation::scaled_count(2); ++i) {
       Random random(validation::seed_of(i));
@@ -86,7 +79,7 @@ class VtkWriter : public testing::Test {
     for (const auto& entry : fs::directory_iterator(directory_.path())) found.push_back(entry.path().filename());
     return found;
   }
-  const validation::TemporaryDirectory directory_{validation::memory_folder()};
+  const TemporaryDirectory directory_{memory_folder()};
 };
 
 TEST_F(VtkWriter, LeavesNothingWhenItIsCancelledOrCannotWrite) {
@@ -98,50 +91,6 @@ TEST_F(VtkWriter, LeavesNothingWhenItIsCancelledOrCannotWrite) {
   fs::create_directory(directory_.path() / "map_scene.vtu.whole");  // the scene's file cannot be opened
   EXPECT_THROW(write(content, directory_.path() / "map.vtu"), InputError);
   EXPECT_EQ(files(), std::vector<fs::path>{"map_scene.vtu.whole"});
-}
-
-TEST_F(VtkWriter, AConvexOutlineCutsCells) {
-  SceneBuilder builder;
-  const std::vector<std::uint32_t> ring = {builder.add_vertex({0, 0, 0}), builder.add_vertex({1, 0, 0}),
-                                           builder.add_vertex({0.25, 1, 0})};
-  builder.add_face(builder.patch("floor"), builder.add_material({}), {ring});
-  const Scene scene = builder.build();
-  const std::vector<Receiver> receivers = grid_receivers(scene, faces_with_area(scene), {5, 5});
-  const DataSet data = cells_of(scene, receivers, cell_order(receivers));
-  ASSERT_EQ(data.ends.size(), receivers.size());
-  double area = 0.0;
-  std::int64_t begin = 0;
-  std::set<std::int64_t> sizes;
-  for (const std::int64_t end : data.ends) {
-    const Vec3& first = data.points[static_cast<std::size_t>(data.corners[static_cast<std::size_t>(begin)])];
-    for (std::int64_t k = begin + 1; k + 1 < end; ++k) {
-      const Vec3& p = data.points[static_cast<std::size_t>(data.corners[static_cast<std::size_t>(k)])];
-      const Vec3& q = data.points[static_cast<std::size_t>(data.corners[static_cast<std::size_t>(k) + 1])];
-      const double twice = (p.x - first.x) * (q.y - first.y) - (p.y - first.y) * (q.x - first.x);
-      EXPECT_GE(twice, 0.0);
-      area += 0.5 * twice;
-    }
-    sizes.insert(end - begin);
-    begin = end;
-  }
-  for (const Vec3& p : data.points) {
-    EXPECT_LE(p.y, 4.0 * p.x + 1e-12);
-    EXPECT_LE(p.y, (1.0 - p.x) / 0.75 + 1e-12);
-  }
-  EXPECT_GT(sizes.size(), 1U);
-  EXPECT_LT(area, 0.5);  // cells whose centres lie outside are missing
-  EXPECT_GT(area, 0.45);
-}
-
-TEST_F(VtkWriter, NamesFieldsAfterTheSourceOnlyIfThereAreSeveral) {
-  const SourceValues one{"lamp", {0.5}, {0.5}, {0.5}, {0}, {}, {{1, 2, 3}}};
-  std::vector<std::string> names;
-  for (const Field& field : fields_of({one})) names.push_back(field.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"exact", "lower", "upper", "status", "radiosity"}));
-  const std::vector<Field> two = fields_of({one, one});
-  EXPECT_EQ(two.front().name, "exact (lamp)");
-  EXPECT_EQ(two.back().name, "radiosity");
-  EXPECT_EQ(std::get<std::vector<double>>(two.back().values), (std::vector<double>{2, 4, 6}));
 }
 
 }  // namespace

@@ -1,34 +1,15 @@
 // The experiments of the report, each on a scene that is small enough for a test, and their shared helpers.
 #include "experiments/experiments.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <string>
-
 #include "exactff/scene_files.h"
 #include "kernel/statistics.h"
 #include "page/gnuplot.h"
+#include "support/test.h"
 
 namespace exactff::experiments {
 namespace {
 
 const Hooks kNoHooks;
-
-// --- what they share -----------------------------------------------------------------------------------
-
-TEST(Experiments, AreFoundByNameAndNearlyByAnother) {
-  ASSERT_EQ(all_experiments().size(), 4U);
-  for (const Experiment& e : all_experiments()) EXPECT_EQ(&experiment_named(e.name), &e);
-  try {
-    (void)experiment_named("karkanis");
-    FAIL() << "there is none of that name";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("karkanis-times"), std::string::npos) << error.what();
-  }
-}
 
 // A floor and a wall that meet, and a lamp above the floor.
 MeshingScene corner() {
@@ -80,46 +61,6 @@ TEST(Experiments, GiveTheSameBytesOfValuesForAnyNumberOfThreads) {
   }
 }
 
-TEST(Experiments, GiveUpWhenCancelled) {
-  Hooks hooks;
-  hooks.cancelled = [] { return true; };
-  for (const SmallRun& small : small_runs()) EXPECT_THROW((void)small.run(2, hooks), Cancelled) << small.name;
-  EXPECT_THROW((void)karkanis_times(TimesSize{.triangles = {10}}, hooks), Cancelled);
-}
-
-// --- Karkanis' two plots -------------------------------------------------------------------------------
-
-TEST(HemicubeScatter, AFinerHemicubeMissesFewerAndErrsLess) {
-  const ScatterSize size{.scenes = 2, .triangles = 100, .resolutions = {20, 200}};
-  const std::vector<ScatterPoint> points = scatter_points(size, 1, kNoHooks);
-  const auto missed = [&](std::size_t r) {
-    return std::ranges::count_if(points, [&](const ScatterPoint& p) { return p.exact > 0.0 && p.hemicube[r] == 0.0; });
-  };
-  EXPECT_GT(missed(0), 10);
-  EXPECT_LT(missed(1), missed(0) / 2);
-  const auto error = [&](std::size_t r) {
-    std::vector<double> errors;
-    for (const ScatterPoint& p : points) {
-      if (p.exact > 1e-3) errors.push_back(std::abs(p.hemicube[r] - p.exact) / p.exact);
-    }
-    return kernel::median(errors);
-  };
-  EXPECT_LT(error(1), 0.2 * error(0));
-}
-
-TEST(HemicubeScatter, DrawsWhatIsMissedApart) {
-  const Result result = hemicube_scatter(ScatterSize{.scenes = 1, .triangles = 100, .resolutions = {20}}, 1, kNoHooks);
-  ASSERT_EQ(result.figures.size(), 2U);
-  for (const page::Figure& figure : result.figures) EXPECT_NE(figure.script.find("missed"), std::string::npos);
-}
-
-// --- times ---------------------------------------------------------------------------------------------
-
-TEST(KarkanisTimes, LocalExponentsOfHisTimesAreThosePublished) {
-  EXPECT_NEAR(local_exponent(50, 0.2, 100, 2.8), 3.807, 1e-3);
-  EXPECT_NEAR(local_exponent(200, 300.0, 500, 28800.0), 4.981, 1e-3);
-}
-
 TEST(KarkanisTimes, TheShaftSavesPairsAndChangesNoBit) {
   const WorkRow row = work_row(40, true);
   EXPECT_EQ(row.differences, std::size_t{0});
@@ -128,32 +69,6 @@ TEST(KarkanisTimes, TheShaftSavesPairsAndChangesNoBit) {
   EXPECT_GT(row.visible, 30U);
   EXPECT_GT(row.sum, 0.0);
   EXPECT_FALSE(work_row(10, false).differences);
-}
-
-TEST(KarkanisTimes, NamesWhatTheBudgetLeavesOut) {
-  TimesSize size{.triangles = {10, 20, 40}};
-  size.budget = 0.0;
-  const Result result = karkanis_times(size, kNoHooks);
-  ASSERT_EQ(result.left_out.size(), 1U);
-  EXPECT_NE(result.left_out[0].what.find("20 and 40"), std::string::npos) << result.left_out[0].what;
-  ASSERT_EQ(result.values.size(), 1U);
-  EXPECT_EQ(result.values[0].csv, karkanis_times(size, kNoHooks).values[0].csv);
-}
-
-// --- cells of one radiosity ---
-
-TEST(Meshing, SeesTheCornellBoxOfTheFile) {
-  const Scene ours = cornell_box().scene, theirs = read_obj(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
-  EXPECT_TRUE(std::ranges::equal(ours.vertices(), theirs.vertices()));
-  ASSERT_EQ(ours.faces().size(), theirs.faces().size());
-  for (std::size_t f = 0; f < ours.faces().size(); ++f) {
-    const Face &one = ours.faces()[f], &other = theirs.faces()[f];
-    EXPECT_EQ(one.rings, other.rings);
-    EXPECT_EQ(ours.patch(one.patch).name, theirs.patch(other.patch).name);
-    EXPECT_EQ(ours.material(one.material).name, theirs.material(other.material).name);
-    EXPECT_EQ(ours.material(one.material).reflectance, theirs.material(other.material).reflectance);
-    EXPECT_EQ(ours.material(one.material).radiosity, theirs.material(other.material).radiosity);
-  }
 }
 
 TEST(Meshing, SmallerCellsErrLess) {
@@ -178,42 +93,28 @@ TEST(Meshing, SmallerCellsErrLess) {
   EXPECT_LT(*study.slope, 2.0);
 }
 
-// Light that is the same everywhere does not depend on cells: B is 2 in all of this room, whose walls emit 1 and
-// reflect a half, but for one that reflects all.
-TEST(Meshing, InAFurnaceCellsDoNotMatter) {
-  SceneBuilder builder;
-  const MaterialId glow =
-      builder.add_material({.name = "glow", .reflectance = {0.5, 0.5, 0.5}, .radiosity = {1, 1, 1}});
-  const MaterialId white = builder.add_material({.name = "white", .reflectance = {1, 1, 1}});
-  const auto corner_at = [&](int i) {
-    return Vec3{static_cast<double>(i & 1), static_cast<double>(i >> 1 & 1), static_cast<double>(i >> 2 & 1)};
-  };
-  for (int i = 0; i < 8; ++i) builder.add_vertex(corner_at(i));
-  const std::vector<std::vector<std::uint32_t>> sides = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
-                                                         {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    builder.add_face(builder.patch("side " + std::to_string(i)), i == 0 ? white : glow, {sides[i]});
-  }
-  const MeshingScene room{builder.build(),
-                          {.eye = {0.5, 0.5, 0.875}, .look = {0.5, 0.5, 0}, .up = {0, 1, 0}, .fov = 90.0}};
-  const MeshingStudy study = meshing_study(room, {.parts = {1, 2}, .pixels = 8}, 1, kNoHooks);
-  EXPECT_EQ(study.levels.front().all.pixels, 16U) << "48 of 64 show a wall that emits";
-  EXPECT_LT(study.levels.front().all.worst, 1e-3);
-  EXPECT_NEAR(study.levels.front().all.mean_ratio, 1.0, 1e-3);
-  EXPECT_LT(study.reference.half_width, 0.05);
+TEST(KarkanisTimes, NamesWhatTheBudgetLeavesOut) {
+  TimesSize size{.triangles = {10, 20, 40}};
+  size.budget = 0.0;
+  const Result result = karkanis_times(size, kNoHooks);
+  ASSERT_EQ(result.left_out.size(), 1U);
+  EXPECT_HOLDS(result.left_out[0].what, "20 and 40");
+  ASSERT_EQ(result.values.size(), 1U);
+  EXPECT_EQ(result.values[0].csv, karkanis_times(size, kNoHooks).values[0].csv);
 }
 
-// --- the plot they need --------------------------------------------------------------------------------
-
-TEST(ScatterPlot, RoundsItsPointsAndDrawsEachPlaceOnce) {
-  const page::Axes axes{.x = "x", .y = "y"};
-  const std::string script = page::scatter_plot(
-      axes,
-      {{"cloud", {{0.123456, 1.0}, {0.123461, 1.0}, {2.0, 0.0}, {3.0, 5.0}}, 1}, {"diagonal", {{1, 1}, {2, 2}}, 0}});
-  EXPECT_NE(script.find("0.1235 1\n3 5\nEND"), std::string::npos) << script;
-  EXPECT_NE(script.find("'diagonal'"), std::string::npos);
-  EXPECT_EQ(script.find("0.12346"), std::string::npos);
-  EXPECT_EQ(page::scatter_plot(axes, {{"nothing", {{-1.0, 1.0}}, 1}}), "");
+TEST(Meshing, SeesTheCornellBoxOfTheFile) {
+  const Scene ours = cornell_box().scene, theirs = read_obj(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
+  EXPECT_TRUE(std::ranges::equal(ours.vertices(), theirs.vertices()));
+  ASSERT_EQ(ours.faces().size(), theirs.faces().size());
+  for (std::size_t f = 0; f < ours.faces().size(); ++f) {
+    const Face &one = ours.faces()[f], &other = theirs.faces()[f];
+    EXPECT_EQ(one.rings, other.rings);
+    EXPECT_EQ(ours.patch(one.patch).name, theirs.patch(other.patch).name);
+    EXPECT_EQ(ours.material(one.material).name, theirs.material(other.material).name);
+    EXPECT_EQ(ours.material(one.material).reflectance, theirs.material(other.material).reflectance);
+    EXPECT_EQ(ours.material(one.material).radiosity, theirs.material(other.material).radiosity);
+  }
 }
 
 }  // namespace

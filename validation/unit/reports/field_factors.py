@@ -51,36 +51,7 @@ def plates(across, block=1):
         return field.Scene(program, data / "field/plates.obj", pathlib.Path(name)).cells(across, block)
 
 
-def square_and_triangle():
-    points = numpy.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [0, 1, 1], [1, 0, 1]], float)
-    return field.Cells(points, [[0, 1, 2, 3], [4, 5, 6]], [0, 1], [0, 1], 1.0)
-
-
 class FieldFactors(unittest.TestCase):
-    def test_cells_cover_their_patches_and_keep_their_front(self):
-        cells = plates(4)
-        numpy.testing.assert_allclose(numpy.bincount(cells.patch, cells.areas), [1, 1, 0.25, 0.25])
-        self.assertEqual(list(numpy.bincount(cells.patch)), [16, 16, 4, 4])
-        numpy.testing.assert_allclose(cells.normals, [[0, 0, 1]] * 16 + [[0, 0, -1]] * 16 + [[0, 0, 1]] * 4 +
-                                      [[0, 0, -1]] * 4, atol=1e-15)
-        self.assertEqual(list(cells.block), list(range(40)))
-
-    def test_calculix_gets_triangles_for_polygons(self):
-        points = numpy.array([[0, 0, 0], [2, 0, 0], [2, 1, 0], [1, 1, 0], [0, 1, 0]], float)
-        polygon = field.Cells(points, [[0, 1, 2], [0, 1, 2, 3, 4]], [0, 1], [0, 1], 2.0)
-        cells = field.without_polygons(polygon)
-        self.assertEqual(cells.corners, [[0, 1, 2], [5, 0, 1], [5, 1, 2], [5, 2, 3], [5, 3, 4], [5, 4, 0]])
-        self.assertEqual(list(cells.patch), [0] + [1] * 5)
-        numpy.testing.assert_allclose(cells.areas.sum(), 3)
-        numpy.testing.assert_allclose(cells.normals, [[0, 0, 1]] * 6)
-
-    def test_calculix_gets_backs_as_one_patch_more(self):
-        cells = field.with_backs(square_and_triangle(), [1])
-        self.assertEqual(cells.corners, [[0, 1, 2, 3], [4, 5, 6], [7, 8, 9]])
-        self.assertEqual(list(cells.patch), [0, 1, 2])
-        numpy.testing.assert_allclose(cells.points[7:], [[1, 0, 1.001], [0, 1, 1.001], [0, 0, 1.001]])
-        numpy.testing.assert_allclose(cells.normals[1:], [[0, 0, -1], [0, 0, 1]], atol=1e-15)
-
     def test_factors_of_patches_are_weighted_by_area(self):
         faces = numpy.array([[0, 0.25, 0.5], [0, 0, 0.25], [0.125, 0.5, 0]])
         patches = field.of_patches(faces, numpy.array([1.0, 3.0, 2.0]), numpy.array([0, 0, 1]))

@@ -1,22 +1,14 @@
 // Where shadows end on a grid of receivers, and profiles across them.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <memory>
 #include <variant>
-#include <vector>
 
 #include "exactff/study.h"
 #include "study/settings.h"
 #include "study/sight.h"
+#include "support/test.h"
 #include "unit/reports/study_support.h"
 
 namespace exactff::study {
 namespace {
-
-using validation::small_room;
 
 // A lamp [-1, 1]^2 at height 2 and half a plane at height 1, x > 0: the floor sees all of the lamp where x < -1 and
 // nothing where x > 1.
@@ -72,20 +64,6 @@ TEST(ShadowEdges, AreWhereTheHalfPlaneCastsThem) {
   }
 }
 
-TEST(ShadowEdges, AreLeftOutWhereThereAreNone) {
-  const auto why = [](const Scene& scene, const auto& change) {
-    Begun begun(scene, {2, 2});
-    change(begun.study.request.receivers);
-    return std::get<LeftOut>(find_shadow_edges(begun.study.request, begun.sources, {})).why;
-  };
-  const auto nothing = [](const auto&) {};
-  EXPECT_NE(why(small_room(false), nothing).find("of one kind all over the face"), std::string::npos);
-  const Scene room = small_room(true);
-  EXPECT_NE(why(room, [](auto& list) { list[1].cell.reset(); }).find("not one grid"), std::string::npos);
-  EXPECT_NE(why(room, [](auto& list) { list[1].cell->lattice = std::make_shared<Lattice>(); }).find("not one grid"),
-            std::string::npos);
-}
-
 TEST(Profiles, HaveTheirKinksWhereTheHalfPlaneCastsThem) {
   const Scene scene = half_plane();
   Begun begun(scene);
@@ -108,10 +86,58 @@ TEST(Profiles, HaveTheirKinksWhereTheHalfPlaneCastsThem) {
   }
 }
 
-TEST(Profiles, AreLeftOutWithoutAPenumbra) {
-  const Scene room = small_room(false);
-  Begun begun(room);
-  EXPECT_EQ(std::get<LeftOut>(find_profile(begun.study, begun.sources, {})).what, "penumbra profile");
+// --- Leaves of the adaptive algorithm whose rays miss that a source is seen in part ---
+
+Loop rectangle(double x0, double y0, double x1, double y1, bool hole = false) {
+  return {{{x0, y0, 1}, {x1, y0, 1}, {x1, y1, 1}, {x0, y1, 1}}, hole};
+}
+
+// The unit square at z = 1; the part to the left of `seen` is visible.
+PlaneDrawing unit_source(double seen) {
+  PlaneDrawing plane;
+  plane.normal = {0, 0, 1};
+  plane.source = plane.clipped_source = {rectangle(0, 0, 1, 1)};
+  plane.visible = {rectangle(0, 0, seen, 1)};
+  return plane;
+}
+
+Leaf leaf(double x0, double x1, LeafReason reason) {
+  Leaf result;
+  result.corners = {{{x0, 0, 1}, {x1, 0, 1}, {x1, 1, 1}, {x0, 1, 1}}};
+  result.corner_count = 4;
+  result.reason = reason;
+  return result;
+}
+
+TEST(SilentErrors, AreSampledLeavesThatAreSeenInPart) {
+  const std::vector<PlaneDrawing> truth = {unit_source(0.5)};
+  const std::vector<Leaf> leaves = {
+      leaf(0, 0.5, LeafReason::kSampledVisible),      // right
+      leaf(0.5, 1, LeafReason::kSampledHidden),       // right
+      leaf(0.25, 0.75, LeafReason::kSampledVisible),  // silent
+      leaf(0.25, 0.75, LeafReason::kEpsF),            // the sampled value is neither 0 nor 1
+      leaf(0.6, 0.8, LeafReason::kSampledVisible),    // wrong
+      leaf(0.1, 0.2, LeafReason::kSampledHidden),     // wrong
+  };
+  const SampledVerdict verdict = judge_leaves(leaves, truth);
+  EXPECT_EQ(verdict.silent, 1U);
+  EXPECT_EQ(verdict.wrong, 2U);
+}
+
+TEST(SilentErrors, AddUpToWhatTheFormFactorIsOffBy) {
+  const PlaneDrawing plane = unit_source(0.75);
+  const auto error = [&](double x0, double x1, LeafReason reason) {
+    Leaf one = leaf(x0, x1, reason);
+    one.form_factor = 0.2;
+    return judge_leaves({one}, {plane}).error;
+  };
+  EXPECT_NEAR(error(0.5, 1, LeafReason::kSampledVisible), 0.2 * 0.5, 1e-15);
+  EXPECT_NEAR(error(0.5, 1, LeafReason::kSampledHidden), -0.2 * 0.5, 1e-15);
+  EXPECT_NEAR(error(0, 1, LeafReason::kSampledVisible), 0.2 * 0.25, 1e-15);
+  EXPECT_NEAR(error(0.8, 1, LeafReason::kSampledVisible), 0.2, 1e-15);
+  EXPECT_NEAR(error(0, 0.5, LeafReason::kSampledHidden), -0.2, 1e-15);
+  EXPECT_EQ(error(0, 0.5, LeafReason::kSampledVisible), 0.0);
+  EXPECT_EQ(error(0, 1, LeafReason::kEpsF), 0.0) << "not decided by sampling";
 }
 
 }  // namespace

@@ -1,29 +1,18 @@
 // The report on a study: figures, pages, and the folder that they are written to.
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
-
+#include "exactff/study.h"
 #include "page/gnuplot.h"
 #include "page/output_folder.h"
 #include "report/report.h"
-#include "support/folder.h"
-#include "support/program.h"
+#include "study/settings.h"
+#include "support/test.h"
 #include "unit/reports/study_support.h"
 
 namespace exactff::study {
 namespace {
 
 namespace fs = std::filesystem;
-using validation::small_study;
-using validation::whole_study;
-
-// --- pages -------------------------------------------------------------------------------------------
 
 // The report on a study, without figures.
 struct UndrawnReport {
@@ -57,79 +46,16 @@ TEST(Study, TheReportHoldsEveryFigureAndFetchesNothing) {
     ASSERT_GE(drawn.size(), study == &whole_study() ? 12U : 6U);
     const std::string text = undrawn.text();
     for (const page::DrawnFigure& one : drawn) {
-      EXPECT_NE(text.find("<figure id=\"" + one.figure.id + "\""), std::string::npos) << one.figure.id;
+      EXPECT_HOLDS(text, "<figure id=\"" + one.figure.id + "\"") << one.figure.id;
     }
     expect_nothing_fetched(text);
-    EXPECT_NE(text.find("room &lt;&amp;&gt;"), std::string::npos) << "names are escaped";
+    EXPECT_HOLDS(text, "room &lt;&amp;&gt;") << "names are escaped";
     EXPECT_EQ(text.find("room <&>"), std::string::npos);
   }
 }
 
-TEST(Study, AReportOnSeveralScenesAndChaptersHoldsThemAll) {
-  UndrawnReport undrawn;
-  undrawn.report.title = "Two <rooms>";
-  undrawn.add("one", "Room 1", small_study());
-  undrawn.add("two", "Room & 2", whole_study());
-  page::Chapter chapter{.name = "a-chapter", .title = "What was <found>"};
-  chapter.paragraphs = {"One is less than two: 1 < 2."};
-  chapter.tables = {{"Numbers & names", {"name", "number"}, {{"a < b", "17.5"}}}};
-  chapter.values = {{"a-chapter.csv", "a number", "# of one\nx\n1\n"}};
-  undrawn.report.chapters.push_back(chapter);
-  undrawn.pages.chapters.emplace_back().left_out.push_back({"the rest", "it is < nothing"});
-  undrawn.report.left_out.push_back({"Room <3>", "this report is abridged"});
-  const std::string text = undrawn.text();
-  for (const char* part :
-       {"Two &lt;rooms&gt;", "Room 1", "Room &amp; 2", "What was &lt;found&gt;", "1 &lt; 2.", "Numbers &amp; names",
-        "a &lt; b", ">17.5<", "a-chapter.csv", "the rest", "it is &lt; nothing", "Room &lt;3&gt;", "SCENE_values.csv",
-        "SCENE_profile.csv", "<code>two</code> (Room &amp; 2)"}) {
-    EXPECT_NE(text.find(part), std::string::npos) << part;
-  }
-  std::set<std::string> ids;
-  for (std::size_t at = text.find(" id=\""); at != std::string::npos; at = text.find(" id=\"", at + 1)) {
-    const std::string id = text.substr(at + 5, text.find('"', at + 5) - at - 5);
-    EXPECT_TRUE(ids.insert(id).second) << id << " occurs twice";
-  }
-  expect_nothing_fetched(text);
-}
-
-TEST(InlinedSvg, HasItsOwnIdsAndNothingFromOutside) {
-  const std::string svg =
-      "<?xml version=\"1.0\"?>\n<svg viewBox=\"0 0 1 1\"\n xmlns=\"http://www.w3.org/2000/svg\"\n "
-      "xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n<title>x</title><circle id='p'/><use xlink:href='#p'/>"
-      "<g color=\"black\" fill=\"black\"/></svg>\n";
-  const std::string text = page::inline_svg(svg, "fig", "A \"title\"");
-  EXPECT_TRUE(text.starts_with("<svg role=\"img\" aria-label=\"A &quot;title&quot;\""));
-  EXPECT_NE(text.find("id='fig-p'"), std::string::npos);
-  EXPECT_NE(text.find("href='#fig-p'"), std::string::npos);
-  EXPECT_NE(text.find("fill=\"currentColor\""), std::string::npos);
-  EXPECT_EQ(text.find("http:"), std::string::npos);
-  EXPECT_EQ(text.find("<title>"), std::string::npos);
-  EXPECT_EQ(text.find("color=\"black\""), std::string::npos);
-}
-
-TEST(InlinedSvg, ComesFromEveryFigureThatGnuplotDraws) {
-  const validation::EnvironmentVariable locale(
-      "LC_ALL",
-      "C");  // as on a machine without locales: the scripts are UTF-8 all the same
-  const validation::TemporaryDirectory scratch;
-  std::vector<LeftOut> left_out;
-  std::vector<page::Figure> all = report::figures(small_study(), left_out);
-  std::set<bool> kinds;
-  for (const page::Figure& figure : all) {
-    if (!kinds.insert(figure.map).second) continue;  // one line figure and one map: gnuplot takes its time
-    const page::PlotResult plot = page::run_gnuplot(figure.script, scratch.path());
-    if (plot.outcome == page::PlotResult::Outcome::kNoProgram) GTEST_SKIP() << "gnuplot is not installed";
-    EXPECT_EQ(plot.outcome, page::PlotResult::Outcome::kDrawn) << plot.message;
-    EXPECT_EQ(plot.message, "") << "gnuplot warned about " << figure.id;
-    EXPECT_EQ(page::inline_svg(plot.svg, figure.id, figure.title).find("http"), std::string::npos);
-  }
-  EXPECT_EQ(kinds.size(), 2U);
-}
-
-// --- the folder --------------------------------------------------------------------------------------
-
 TEST(OutputFolder, OfAnEarlierStudyMayBeReplaced) {
-  const validation::TemporaryDirectory directory;
+  const TemporaryDirectory directory;
   const fs::path out = directory.path() / "out";
   fs::create_directories(out);
   std::ofstream(out / "report.html") << "<!doctype html>\n";
@@ -138,6 +64,57 @@ TEST(OutputFolder, OfAnEarlierStudyMayBeReplaced) {
   EXPECT_NO_THROW(page::check_output_folder(out / ""));
   std::ofstream(out / "values.csv") << "a,b\n";
   EXPECT_THROW(page::check_output_folder(out), InputError) << "a table of somebody else's";
+}
+
+// --- What a report concludes from a comparison of methods, in words ---
+
+// Ladders whose rungs have these errors and seconds, on a scene whose brightest receiver has radiosity 2.
+class Verdicts : public ::testing::Test {
+ protected:
+  Verdicts() {
+    study_.exact.resize(2);
+    study_.exact[0].radiosity = {0.5, 2.0, 1.0};
+  }
+  void add(const std::string& text, const std::vector<std::pair<double, double>>& errors_and_seconds) {
+    study_.methods.ladders.push_back(parse_ladder(text));
+    ASSERT_EQ(study_.methods.ladders.back().rungs.size(), errors_and_seconds.size());
+    for (std::size_t rung = 0; rung < errors_and_seconds.size(); ++rung) {
+      MethodCell& cell = study_.methods.cells.emplace_back();
+      cell.ladder = study_.methods.ladders.size() - 1;
+      cell.rung = rung;
+      cell.error.rms = 2.0 * errors_and_seconds[rung].first;
+      cell.seconds = errors_and_seconds[rung].second;
+    }
+  }
+  // The default ones.
+  void add_exact() { add("exact", {{0.0, 1e-4}}); }
+  void add_hemicube() { add("hemicube:resolution=64|128", {{5e-3, 2e-4}, {5e-4, 8e-4}}); }
+  void add_wallace() { add("wallace:splits=1|2", {{0.2, 5e-5}, {4e-4, 9e-4}}); }
+  void add_control() { add("adaptive-exact-visibility:eps_B=0.1", {{1e-9, 1e-6}}); }
+
+  Study study_;
+};
+
+TEST_F(Verdicts, TheCheapestIsTheFastestThatIsRightEnough) {
+  add_exact();
+  add_hemicube();
+  add_wallace();
+  add_control();
+  const auto name = [&](double wanted, std::optional<std::size_t> ladder = {}) {
+    const MethodCell* cell = report::cheapest(study_, wanted, ladder);
+    return cell == nullptr ? std::string("none") : report::cell_name(study_, *cell);
+  };
+  EXPECT_EQ(name(0.3), "wallace, splits 1");
+  EXPECT_EQ(name(5e-3), "hemicube, resolution 64") << "at most, not below";
+  EXPECT_EQ(name(1e-3), "hemicube, resolution 128");
+  EXPECT_EQ(name(4.5e-4), "wallace, splits 2");
+  EXPECT_EQ(name(1e-4), "none") << "neither exact nor the control is a rival";
+  EXPECT_EQ(name(1e-4, 3), "adaptive, exact V, eps_B 0.1") << "but may be asked for";
+  EXPECT_EQ(name(1e-3, 2), "wallace, splits 2");
+  study_.methods.cells[2].error.not_a_number = 1;
+  EXPECT_EQ(name(1e-3), "wallace, splits 2") << "what is no number is not right";
+  study_.methods.cells[4].seconds = kNotTimed;
+  EXPECT_EQ(name(1e-3), "none");
 }
 
 }  // namespace

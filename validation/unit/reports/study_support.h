@@ -1,15 +1,9 @@
 // A small room, and requests for studies of it that take no time, for the tests of the study.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <map>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "exactff/study.h"
 #include "report/report.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 
@@ -74,13 +68,6 @@ inline const study::Study& whole_study() {
   return study;
 }
 
-// What is left out, each with its reason.
-inline std::string left_out_text(const std::vector<LeftOut>& left_out) {
-  std::string text;
-  for (const LeftOut& item : left_out) text += item.what + ": " + item.why + '\n';
-  return text;
-}
-
 inline std::string text_of(const report::StudyTable& one, const study::Study& study) {
   return table::csv_text(one.make(study));
 }
@@ -102,3 +89,14 @@ inline void expect_same_values(const study::Study& a, const study::Study& b, std
 }
 
 }  // namespace exactff::validation
+
+namespace exactff {
+
+using validation::expect_same_values;
+using validation::request_with_methods;
+using validation::small_request;
+using validation::small_room;
+using validation::small_study;
+using validation::whole_study;
+
+}  // namespace exactff

@@ -1,13 +1,11 @@
 // Many receivers over threads: the values of single calls, whatever the threads; progress, cancellation, exceptions.
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <stdexcept>
 #include <thread>
-#include <vector>
 
 #include "exactff/methods.h"
 #include "exactff/models.h"
+#include "support/test.h"
 
 namespace exactff {
 namespace {
@@ -54,13 +52,6 @@ TEST_F(Batch, EstimatesAreThoseOfSingleCalls) {
   }
 }
 
-TEST_F(Batch, FacesAreThoseOfSingleCalls) {
-  std::vector<std::vector<FaceId>> found(receivers_.size());
-  batch::find_faces(scene_, batch::receivers_in(receivers_), {}, {3, {}},
-                    [&](std::size_t i, const NearFaces& near) { found[i] = near.faces; });
-  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i], receivers_[i].on) << i;
-}
-
 TEST_F(Batch, ProgressEndsAtTheTotalAndComesFromTheCallingThread) {
   for (const int threads : {1, 2}) {
     std::size_t last = 0;
@@ -96,11 +87,11 @@ TEST_F(Batch, WhatAReceiverThrowsIsThrown) {
   for (const int threads : {1, 3}) EXPECT_THROW((void)values({threads, {}}), InputError) << threads;
 }
 
-TEST_F(Batch, WhatAHookThrowsIsThrownWhenTheThreadsHaveEnded) {
-  for (const int threads : {1, 3}) {
-    const Hooks hooks{[](const Progress&) { throw std::out_of_range("told"); }, {}};
-    EXPECT_THROW((void)values({threads, hooks}), std::out_of_range) << threads;
-  }
+TEST_F(Batch, FacesAreThoseOfSingleCalls) {
+  std::vector<std::vector<FaceId>> found(receivers_.size());
+  batch::find_faces(scene_, batch::receivers_in(receivers_), {}, {3, {}},
+                    [&](std::size_t i, const NearFaces& near) { found[i] = near.faces; });
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i], receivers_[i].on) << i;
 }
 
 }  // namespace

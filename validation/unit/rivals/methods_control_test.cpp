@@ -1,18 +1,18 @@
-// The exact visible share of a window, and the algorithm that uses it instead of rays.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
+// Methods with closed forms: solid angles, hemicubes, and the exact visible share of a window in place of rays.
 #include "adaptive/sub_patch.h"
 #include "exact/source_planes.h"
 #include "exact/visible_share.h"
+#include "methods/area_sampling.h"
+#include "methods/hemicube.h"
+#include "support/shapes.h"
+#include "support/test.h"
 #include "unit/rivals/methods_support.h"
+#include "unit/rivals/moments.h"
 
 namespace exactff::validation {
 namespace {
 
 using exact::VisibleShare;
-using generate::PlainScene;
 
 struct Window {
   PlainScene plain;
@@ -77,20 +77,6 @@ void expect_as_exactly(VisibleShare& share, const std::vector<Vec3>& window) {
   EXPECT_EQ(found == 1.0, exactly == 1.0);
 }
 
-TEST(VisibleShare, DoublesAndRationalsAgree) {
-  std::uint64_t key = 1;
-  const auto next = [&key] { return adaptive::random_point(7, key++); };
-  for (const PlainScene& plain : busy_scenes()) {
-    Window window(plain);
-    for (int i = 0; i < 3; ++i) {
-      const adaptive::UnitPoint at = next(), size = next();
-      const double side = 0.5 * size.u * size.v * size.v;
-      const std::vector<Vec3> square = square_at(at.u - 0.5, at.v - 0.5, side);
-      expect_as_exactly(window.share, square);
-    }
-  }
-}
-
 // Cases where a filter is uncertain, and where rounding would give 0 or 1.
 TEST(VisibleShare, DecidesNothingAllAndInBetweenExactly) {
   Window window(occluded_scene(0.25));  // hides [-1/2, 1/2]^2
@@ -131,22 +117,128 @@ TEST(VisibleShare, TheSourcesOwnOutlineHidesNothing) {
   EXPECT_EQ(window.share.of(std::vector<Vec3>{{0.75, 0, 1}, {0.75, 0.5, 1}, {out, 0.5, 1}, {out, 0, 1}}), 1.0);
 }
 
-TEST(Control, IsTheAdaptiveAlgorithmBitForBitWhereShaftsDecideAll) {
-  const Scene room = furnished_room();
-  PlainScene wall;  // half below the horizon
-  add(wall, "source", {{0, 0, -1}, {0, 1, -1}, {0, 1, 1}, {0, 0, 1}});
-  wall.point = {0.5, 0.5, 0};
-  for (const PlainScene& plain : {open_scene(), occluded_scene(0.75), wall}) {
-    EXPECT_EQ(value(plain, "adaptive-exact-visibility"), value(plain, "adaptive"));
+// Only pixels on the outline of the source can be wrong. On the top face, a side that spans da columns and db rows
+// crosses at most da + db + 2 pixels, each with at most 4 / (pi n^2).
+double outline_bound(const std::vector<std::array<double, 2>>& outline, int n) {
+  double pixels = 0.0;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const auto& p = outline[i];
+    const auto& q = outline[(i + 1) % outline.size()];
+    pixels += (std::abs(p[0] - q[0]) + std::abs(p[1] - q[1])) * n / 2 + 2;
   }
-  int decided = 0;
-  for (const Receiver& receiver : room_receivers(room)) {
-    const methods::Estimate control = estimate(room, receiver, "lamp", "adaptive-exact-visibility:eps_B=1e-2");
-    if (control.counters["exact V"] > 0) continue;
-    ++decided;
-    EXPECT_EQ(control.form_factor, estimate(room, receiver, "lamp", "adaptive:eps_B=1e-2").form_factor);
+  return pixels * 4.0 * std::numbers::inv_pi / (static_cast<double>(n) * n);
+}
+
+TEST(Hemicube, ErrsByNoMoreThanThePixelsOnTheOutline) {
+  PlainScene plain;  // a square of side 1.2 at height 1, off the axis
+  add(plain, "source", {{-0.5, -0.7, 1}, {-0.5, 0.5, 1}, {0.7, 0.5, 1}, {0.7, -0.7, 1}});
+  const double f = truth(plain);
+  double last = 1.0;
+  for (const int n : {16, 64, 256}) {
+    const double bound = outline_bound({{-0.5, -0.7}, {-0.5, 0.5}, {0.7, 0.5}, {0.7, -0.7}}, n);
+    const double error = std::abs(value(plain, "hemicube:resolution=" + std::to_string(n)) - f);
+    EXPECT_LE(error, bound) << n;
+    EXPECT_LT(bound, last);
+    last = bound;
   }
-  EXPECT_GE(decided, 1);
+  EXPECT_LT(last, 0.03);
+}
+
+// In a closed room, every direction above the horizon hits a face, so every pixel belongs to a patch.
+TEST(Hemicube, FormFactorsInAClosedRoomSumToOne) {
+  PlainScene plain;
+  const Vec3 c[] = {{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {0, 2, 0}, {0, 0, 1.5}, {3, 0, 1.5}, {3, 2, 1.5}, {0, 2, 1.5}};
+  add(plain, "floor", {c[0], c[1], c[2], c[3]});
+  add(plain, "ceiling", {c[4], c[7], c[6], c[5]});
+  add(plain, "front", {c[0], c[4], c[5], c[1]});
+  add(plain, "back", {c[3], c[2], c[6], c[7]});
+  add(plain, "left", {c[0], c[3], c[7], c[4]});
+  add(plain, "right", {c[1], c[5], c[6], c[2]});
+  const Scene room = generate::build(plain);
+  for (const char* choice : {"hemicube:resolution=50", "hemicube:resolution=32,rotation=17"}) {
+    for (const Receiver& receiver : grid_receivers(room, room.select("floor"), {3, 2})) {
+      double total = 0.0;
+      std::uint64_t pixels = 0;
+      for (const Patch& patch : room.patches()) {
+        const methods::Estimate found = estimate(room, receiver, patch.name, choice);
+        total += found.form_factor;
+        pixels += found.counters["pixels"];
+      }
+      EXPECT_NEAR(total, 1.0, 1e-12);
+      EXPECT_EQ(pixels, estimate(room, receiver, "floor", choice).counters["pixels drawn"]);
+    }
+  }
+}
+
+// Triangles with shared sides cover every pixel exactly once: a tessellated source has the pixels of the whole source.
+TEST(Hemicube, TrianglesThatShareSidesTileThePixels) {
+  PlainScene whole, cut;
+  const std::vector<Vec3> square = square_above(0.75, 1.0);  // sides through pixel centres at n = 16
+  add(whole, "source", square);
+  const Vec3 middle{0.0625, -0.1875, 1.0};
+  for (std::size_t i = 0; i < 4; ++i) add(cut, "source", {square[i], square[(i + 1) % 4], middle});
+  for (const char* choice :
+       {"hemicube:resolution=16", "hemicube:resolution=100", "hemicube:resolution=64,rotation=45"}) {
+    EXPECT_NEAR(value(cut, choice), value(whole, choice), 1e-15) << choice;
+  }
+}
+
+// --- area sampling uniform in solid angle: right on average, with the slope of theory ---
+
+const std::string kBySolidAngle = "area-sampling:measure=solid-angle";
+
+PlainScene scene_of(const std::vector<Vec3>& source, const Vec3& normal = {0, 0, 1}) {
+  PlainScene plain;
+  add(plain, "source", source);
+  plain.normal = normal;
+  return plain;
+}
+
+struct Family {
+  const char* name;
+  PlainScene scene;
+};
+
+// A rectangle and a triangle in each.
+std::vector<Family> families() {
+  const auto rectangle = [](double x, double y, double z, double a, double b) {
+    return std::vector<Vec3>{{x, y, z}, {x, y + b, z}, {x + a, y + b, z}, {x + a, y, z}};
+  };
+  const auto triangle = [](double x, double y, double z, double a, double b) {
+    return std::vector<Vec3>{{x, y, z}, {x, y + b, z}, {x + a, y, z}};
+  };
+  return {{"plain", scene_of(rectangle(-1, -1, 1, 2, 2))},
+          {"plain triangle", scene_of(triangle(-1, -1, 1, 2, 2))},
+          {"tiny", scene_of(rectangle(0.3, 0.2, 1, 1e-9, 1e-9))},
+          {"tiny triangle", scene_of(triangle(0.3, 0.2, 1, 1e-9, 1e-9))},
+          {"far", scene_of(rectangle(0.3, 0.2, 1e7, 1, 2))},
+          {"long", scene_of({{1, -1e4, 0}, {1, -1e4, 2}, {1, 1e4, 2}, {1, 1e4, 0}})},
+          {"sliver", scene_of(triangle(0.3, -1e4, 1, 1e-6, 2e4))},
+          {"x almost in the plane", scene_of(rectangle(1, -1, 1e-9, 1, 2), {1, 0, 0})},
+          {"x almost in the plane of a triangle", scene_of(triangle(1, -1, 1e-9, 1, 2), {1, 0, 0})},
+          {"x almost on the source", scene_of(rectangle(-1, -1, 1e-9, 2, 3), {0.6, 0, 0.8})},
+          {"x almost on a triangle", scene_of(triangle(-1, -1, 1e-9, 3, 5), {0.6, 0, 0.8})},
+          {"x almost on a side", scene_of(rectangle(1e-9, -1, 1e-9, 2, 3), {0.6, 0, 0.8})},
+          {"x below a corner", scene_of(rectangle(0, 0, 1e-6, 2, 3))},
+          {"grazing at the horizon", scene_of({{-1, -1, 1e-9}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 1e-9}})},
+          {"across the horizon", scene_of({{1, -1, -1}, {1, -1, 2}, {1, 1, 2}, {1, 1, -1}})},
+          {"across the horizon, oblique", scene_of(rectangle(-1, -1, 1, 2, 2), {0.8, 0.3, 0.1})},
+          {"quadrilateral", scene_of({{-1, -1, 1}, {-1, 1, 1}, {1, 1.5, 1}, {0.5, -1, 1}})}};
+}
+
+TEST(SolidAngle, OfDegenerateSourcesIsRightOnAverage) {
+  for (const Family& family : families()) {
+    SCOPED_TRACE(family.name);
+    const double f = truth(family.scene);
+    ASSERT_GT(f, 0.0);
+    for (const char* pattern : {"random", "stratified", "sobol"}) {
+      const std::vector<double> values =
+          values_by_seed(family.scene, kBySolidAngle + ",samples=64,pattern=" + pattern, 64);
+      for (const double value : values) EXPECT_TRUE(value >= 0.0 && value <= 2.0) << value;
+      const Moments found = moments(values);
+      EXPECT_NEAR(found.mean / f, 1.0, 5.0 * std::sqrt(found.variance / 64.0) / f + 1e-7) << pattern;
+    }
+  }
 }
 
 }  // namespace

@@ -1,18 +1,12 @@
 // Nettle, Wallace and area sampling: properties that theory predicts.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <numbers>
-
 #include "methods/area_sampling.h"
+#include "support/shapes.h"
+#include "support/test.h"
 #include "unit/rivals/methods_support.h"
 #include "unit/rivals/moments.h"
 
 namespace exactff::validation {
 namespace {
-
-using generate::PlainScene;
 
 PlainScene half_hidden() {
   PlainScene plain = open_scene();
@@ -92,39 +86,6 @@ TEST(AreaSampling, VarianceFallsAsTheoryHasIt) {
   EXPECT_GT(ratio(open_scene(), "sobol"), 256.0 / slack);
 }
 
-// Many occluders: the ray library is asked about the whole scene.
-TEST(RayMethods, AreRightOnAverageBehindManyOccluders) {
-  const PlainScene plain = generate::soup({.n = 600, .seed = 8});
-  const double f = truth(plain);
-  for (const char* choice : {"area-sampling:pattern=stratified", "wallace:pattern=jittered,splits=16"}) {
-    const Moments found = moments(values_by_seed(plain, choice, 64));
-    // Wallace's discs of area 1/64 reduce the value by at most 1/200.
-    const double bias = choice[0] == 'w' ? f / 200.0 : 0.0;
-    EXPECT_NEAR(found.mean, f, 5.0 * std::sqrt(found.variance / 64.0) + bias) << choice;
-  }
-}
-
-// Where single precision cannot separate them from x or from the source.
-TEST(RayMethods, LidsOnTheReceiverAndOnTheSourceHideAmongMany) {
-  for (const double z : {1e-9, 1.0 - 1e-9}) {
-    PlainScene plain = generate::soup({.n = 600, .seed = 8});
-    ASSERT_GT(value(plain, "area-sampling:samples=256"), 0.0);
-    add(plain, "lid", square_above(2.0, z));
-    for (const char* choice : {"area-sampling:samples=256", "wallace:splits=16", "nettle"}) {
-      EXPECT_EQ(value(plain, choice), 0.0) << choice << ' ' << z;
-    }
-  }
-}
-
-TEST(RayMethods, TracesNoRayWhereNothingIsInTheWay) {
-  const Scene scene = generate::build(open_scene());
-  for (const char* choice : {"area-sampling", "wallace", "nettle"}) {
-    EXPECT_EQ(estimate(scene, generate::receiver_of(open_scene()), "source", choice).counters["rays"], 0U);
-  }
-  const Scene hidden = generate::build(half_hidden());
-  EXPECT_EQ(estimate(hidden, generate::receiver_of(half_hidden()), "source", "wallace:splits=5").counters["rays"], 25U);
-}
-
 // A lamp of 2^-400 by 2^-400 at a distance of 1: squares of its area underflow.
 PlainScene speck() {
   PlainScene plain = open_scene();
@@ -143,18 +104,6 @@ TEST(RayMethods, AreRightWhereTheSquareOfAnAreaUnderflows) {
   }
 }
 
-// x is 2^-530 below a tiny lamp; a vertex that no face uses gives the scene its size.
-TEST(RayMethods, AreNumbersWhereDistancesSquaredUnderflow) {
-  PlainScene plain = open_scene();
-  for (Vec3& v : plain.vertices) v = {v.x * 0x1p-530, v.y * 0x1p-530, v.z * 0x1p-530};
-  plain.vertices.push_back({1, 1, 1});
-  for (const char* choice : {"area-sampling", "area-sampling:pattern=r2", "wallace", "nettle", "nettle:variant=literal",
-                             "nettle:variant=literal,area_ratio=sender-over-receiver", "adaptive:variant=literal"}) {
-    EXPECT_TRUE(std::isfinite(value(plain, choice))) << choice;
-  }
-  EXPECT_NEAR(value(plain, "adaptive"), truth(plain), 1e-12);
-}
-
 // The text's ratio of areas divided by a squared distance scales with the fourth power of the unit of length.
 TEST(LiteralNettle, IsTheLargestDoubleWhereItsNumberIsLarger) {
   PlainScene plain = open_scene();
@@ -165,6 +114,18 @@ TEST(LiteralNettle, IsTheLargestDoubleWhereItsNumberIsLarger) {
   EXPECT_EQ(value(plain, "nettle:variant=literal"), std::numeric_limits<double>::max());
   generate::scale(plain, 0x1p800);
   EXPECT_EQ(value(plain, "nettle:variant=literal"), 0.0);
+}
+
+// x is 2^-530 below a tiny lamp; a vertex that no face uses gives the scene its size.
+TEST(RayMethods, AreNumbersWhereDistancesSquaredUnderflow) {
+  PlainScene plain = open_scene();
+  for (Vec3& v : plain.vertices) v = {v.x * 0x1p-530, v.y * 0x1p-530, v.z * 0x1p-530};
+  plain.vertices.push_back({1, 1, 1});
+  for (const char* choice : {"area-sampling", "area-sampling:pattern=r2", "wallace", "nettle", "nettle:variant=literal",
+                             "nettle:variant=literal,area_ratio=sender-over-receiver", "adaptive:variant=literal"}) {
+    EXPECT_TRUE(std::isfinite(value(plain, choice))) << choice;
+  }
+  EXPECT_NEAR(value(plain, "adaptive"), truth(plain), 1e-12);
 }
 
 }  // namespace

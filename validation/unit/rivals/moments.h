@@ -1,9 +1,7 @@
 // Values of a method over many seeds.
 #pragma once
 
-#include <string>
-#include <vector>
-
+#include "support/test.h"
 #include "unit/rivals/methods_support.h"
 
 namespace exactff::validation {

@@ -1,19 +1,14 @@
 // Small scenes for the tests of the sampled module.
 #pragma once
 
-#include <string_view>
-#include <vector>
-
 #include "generate/plain_scene.h"
+#include "support/shapes.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 
 // The square [-h, h]^2 at height z, facing down.
 inline std::vector<Vec3> square_above(double h, double z) { return {{-h, -h, z}, {-h, h, z}, {h, h, z}, {h, -h, z}}; }
-
-inline void add(generate::PlainScene& scene, std::string_view patch, const std::vector<Vec3>& corners) {
-  scene.add_ring(scene.patch(patch), corners);
-}
 
 // The origin looking up at [-1, 1]^2 at z = 1.
 inline generate::PlainScene open_scene() {

@@ -1,24 +1,17 @@
 // Finds closed surfaces; removing their back faces changes no result.
 #include "scene/closed_surfaces.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "exactff/exact.h"
-#include "generate/plain_scene.h"
-#include "generate/random.h"
+#include "scene/panels.h"
+#include "support/shapes.h"
 #include "support/solve.h"
+#include "support/test.h"
 
 namespace exactff {
 namespace {
 
-using generate::PlainScene;
-using generate::Random;
 using RingOfFace = std::vector<std::uint32_t>;
+using Corners = std::vector<Vec3>;
 
 // Source [-1,1]^2 at z = 1 facing down, receiver at the origin facing up.
 PlainScene scene_with_source() {
@@ -50,19 +43,6 @@ std::vector<RingOfFace> reversed(std::vector<RingOfFace> faces) {
 std::size_t count_of(const PlainScene& plain) {
   const Scene scene = generate::build(plain);
   return closed_surfaces(scene).surfaces().size();
-}
-
-TEST(ClosedSurfaces, AreTellableByTheirEdges) {
-  PlainScene scene = scene_with_source();
-  EXPECT_EQ(count_of(scene), 0U);
-  add_solid(scene, kCorners, kTetrahedron);
-  EXPECT_EQ(count_of(scene), 1U);
-  PlainScene open = scene;
-  open.patches.pop_back();
-  EXPECT_EQ(count_of(open), 0U);
-  PlainScene turned = scene;
-  std::ranges::reverse(turned.patches.back().faces.front().rings.front());
-  EXPECT_EQ(count_of(turned), 0U);
 }
 
 TEST(ClosedSurfaces, WithAFinAreOpen) {
@@ -136,6 +116,87 @@ TEST(ClosedSurfaces, HideWhatTheBooleansFind) {
     if (random.one_in(4)) receiver.on = {FaceId{1}};
     SCOPED_TRACE(round);
     expect_agreement(scene, receiver);
+  }
+}
+
+// --- Neighbouring faces of one plane become few convex panels; what does not lie side by side does not ---
+
+PlainScene patch_of(const std::vector<Corners>& faces) {
+  PlainScene plain;
+  for (const Corners& face : faces) plain.add_ring(plain.patch("source"), face);
+  return plain;
+}
+
+// The squares with these lower corners, each cut in two, in the plane z = x + y / 2.
+std::vector<Corners> split_squares(const std::vector<std::pair<int, int>>& at) {
+  std::vector<Corners> faces;
+  const auto corner = [](int x, int y) { return Vec3{1.0 * x, 1.0 * y, x + 0.5 * y}; };
+  for (const auto& [x, y] : at) {
+    faces.push_back({corner(x, y), corner(x + 1, y), corner(x + 1, y + 1)});
+    faces.push_back({corner(x, y), corner(x + 1, y + 1), corner(x, y + 1)});
+  }
+  return faces;
+}
+
+std::vector<std::pair<int, int>> block_of(int n) {
+  std::vector<std::pair<int, int>> at;
+  for (int x = 0; x < n; ++x) {
+    for (int y = 0; y < n; ++y) at.emplace_back(x, y);
+  }
+  return at;
+}
+
+TEST(Panels, JoinNothingThatIsOffThePlaneByAnUlp) {
+  std::vector<Corners> faces = split_squares({{1, 1}});
+  faces[1][2].z = std::nextafter(faces[1][2].z, 10.0);
+  EXPECT_TRUE(panels(generate::build(patch_of(faces))).empty());
+  // A pyramid that is an ulp high: its rim lies in one plane.
+  const Vec3 apex{0.5, 0.5, std::nextafter(0.75, 1.0)}, a{0, 0, 0}, b{1, 0, 1}, c{1, 1, 1.5}, d{0, 1, 0.5};
+  EXPECT_TRUE(panels(generate::build(patch_of({{a, b, apex}, {b, c, apex}, {c, d, apex}, {d, a, apex}}))).empty());
+}
+
+TEST(Panels, JoinNoFacesWithOppositeFronts) {
+  std::vector<Corners> faces = split_squares({{0, 0}});
+  std::swap(faces[1][0], faces[1][1]);
+  EXPECT_TRUE(panels(generate::build(patch_of(faces))).empty());
+  // Folded over: both on one side of the edge that they share.
+  const Corners folded{faces[0][2], faces[0][1], {0.5, 0, 0.5}};
+  EXPECT_TRUE(panels(generate::build(patch_of({faces[0], folded}))).empty());
+}
+
+TEST(Panels, JoinNothingThatOverlaps) {
+  std::vector<Corners> faces = split_squares({{0, 0}});
+  faces.push_back(faces[0]);
+  EXPECT_TRUE(panels(generate::build(patch_of(faces))).empty());
+  // A spiral in one plane, once and a half around.
+  std::vector<Corners> spiral;
+  const auto at = [](int i, double radius) {
+    const double turn = 0.5 * i;
+    return Vec3{radius * std::cos(turn), radius * std::sin(turn), 0.0};
+  };
+  for (int i = 0; i < 19; ++i) {
+    const double inner = 1.0 + i / 16.0, next = inner + 1.0 / 16;
+    spiral.push_back({at(i, inner), at(i, inner + 1.0), at(i + 1, next + 1.0)});
+    spiral.push_back({at(i, inner), at(i + 1, next + 1.0), at(i + 1, next)});
+  }
+  const Scene scene = generate::build(patch_of(spiral));
+  EXPECT_TRUE(panels(scene).empty());
+}
+
+TEST(Panels, AreOfOnePatchAndTransparentAsAWhole) {
+  const std::vector<Corners> faces = split_squares(block_of(2));
+  PlainScene plain;
+  for (std::size_t f = 0; f < faces.size(); ++f) plain.add_ring(plain.patch(f < 4 ? "a" : "b"), faces[f]);
+  const Scene scene = generate::build(plain);
+  EXPECT_EQ(panels(scene).sheets().size(), 2U);
+  const std::vector<Selection> glass{scene.select("a:1"), scene.select("a:2")};
+  const Scene with_glass = scene.with_transparent(glass);
+  const Panels& all = panels(with_glass);
+  ASSERT_EQ(all.sheets().size(), 3U);
+  for (const Sheet& sheet : all.sheets()) {
+    for (const std::uint32_t piece : sheet.pieces) {
+      EXPECT_EQ(with_glass.pieces()[piece].transparent, all.piece(sheet.first_panel).transparent);
+    }
   }
 }
 

@@ -3,16 +3,11 @@
 #include <CGAL/IO/OFF.h>
 #include <CGAL/IO/PLY.h>
 #include <CGAL/IO/STL.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <sstream>
 
 #include "exactff/scene_files.h"
-#include "generate/plain_scene.h"
-#include "generate/random.h"
 #include "support/random_scenes.h"
+#include "support/shapes.h"
+#include "support/test.h"
 
 namespace exactff {
 namespace {
@@ -22,8 +17,8 @@ using Points = std::vector<Point>;
 using Polygons = std::vector<std::vector<std::size_t>>;
 
 // A mesh of convex polygons in the plane and of triangles in space.
-generate::PlainScene mesh(generate::Random& random, bool triangles_only) {
-  generate::PlainScene scene;
+PlainScene mesh(Random& random, bool triangles_only) {
+  PlainScene scene;
   for (int i = 0; i < 40; ++i) {
     const double x = random.between(-1, 1), y = random.between(-1, 1);
     scene.vertices.push_back({x, y, triangles_only ? random.between(-1, 1) : 0.0});
@@ -85,7 +80,7 @@ bool read_off(std::istream& in, Points& points, Polygons& polygons) { return CGA
 
 TEST(FormatReferee, CgalReadsTheSamePolygons) {
   for (std::uint64_t i = 0; i < 20; ++i) {
-    generate::Random random(validation::seed_of(i));
+    Random random(validation::seed_of(i));
     const Scene polygons = generate::build(mesh(random, false), {}, {.bad_faces = BadFaces::kSkip});
     compare(polygons, "s.ply", Encoding::kText, read_ply);
     compare(polygons, "s.ply", Encoding::kBinary, read_ply);
@@ -95,8 +90,8 @@ TEST(FormatReferee, CgalReadsTheSamePolygons) {
 
 TEST(FormatReferee, CgalReadsTheSameTriangles) {
   for (std::uint64_t i = 0; i < 20; ++i) {
-    generate::Random random(validation::seed_of(i));
-    generate::PlainScene plain = mesh(random, true);
+    Random random(validation::seed_of(i));
+    PlainScene plain = mesh(random, true);
     for (generate::PlainFace& face : plain.patches[0].faces) {  // CGAL drops triangles that use a vertex twice
       const auto& r = face.rings[0];
       if (r[0] == r[1] || r[1] == r[2] || r[2] == r[0]) face.rings[0] = {0, 1, 2};

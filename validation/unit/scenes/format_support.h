@@ -1,10 +1,8 @@
 // Short forms for the tests of the readers.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "exactff/scene.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 
@@ -35,3 +33,12 @@ inline const std::vector<std::uint32_t>& ring(const Scene& scene, std::size_t fa
 }
 
 }  // namespace exactff::validation
+
+namespace exactff {
+
+using validation::error_of;
+using validation::patch_names;
+using validation::ring;
+using validation::warnings_of;
+
+}  // namespace exactff

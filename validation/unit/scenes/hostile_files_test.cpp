@@ -1,22 +1,24 @@
-// Files that are damaged, contradictory or far too large give either one helpful message of limited length, or the
-// right scene.
-#include <gtest/gtest.h>
+// Files, names and polygons that nobody means well are read, or refused with their place.
 #include <sys/stat.h>
 
-#include <algorithm>
-#include <sstream>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <nlohmann/json.hpp>
 
 #include "exactff/receiver.h"
 #include "exactff/scene_files.h"
-#include "support/program.h"
+#include "scene/triangulation.h"
+#include "support/test.h"
+#include "text/encoding.h"
 #include "text/names.h"
+#include "unit/outside/sanitized.h"
 #include "unit/scenes/format_support.h"
 
 namespace exactff {
 namespace {
 
-using validation::error_of;
-using validation::TemporaryDirectory;
+using Vertices = std::vector<Vec3>;
 
 const std::string kCorners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
@@ -51,11 +53,6 @@ TEST(HostileFiles, ACutOffLastLineIsWarnedAbout) {
   EXPECT_TRUE(read_text(kCorners + "f 1 2 3\r").warnings().empty());
 }
 
-TEST(HostileFiles, ControlCharactersDoNotReachTheTerminal) {
-  const Problem problem{"a\nb\x1b[31m.obj", 3, "face '\x07' is bad", "", ""};
-  EXPECT_EQ(problem.message(), "a\\x0ab\\x1b[31m.obj:3: face '\\x07' is bad");
-}
-
 TEST(HostileFiles, ThousandsOfProblemsGiveTwentyLinesAndACount) {
   const std::string text = kCorners + repeated("f 1 3 2 4\n", 5000);
   try {
@@ -70,31 +67,6 @@ TEST(HostileFiles, ThousandsOfProblemsGiveTwentyLinesAndACount) {
   }
 }
 
-TEST(HostileFiles, ALongNameIsLegalButNotForManyFaces) {
-  const std::string name(1'000'000, 'x');
-  const Scene scene = read_text(kCorners + "g " + name + "\nf 1 2 3 4\n");
-  EXPECT_EQ(scene.name_of(scene.select(name)), name);
-  const std::string unknown = error_of([&] { return scene.select(name + "y"); });
-  EXPECT_LT(unknown.size(), 1000U);
-  const std::string bad = error_of([&] { return read_text(kCorners + "g " + name + "\nf 1 3 2 4\n"); });
-  EXPECT_LT(bad.size(), 1000U);
-  EXPECT_NE(bad.find("crosses itself"), std::string::npos);
-  EXPECT_EQ(error_of([&] { return read_text(kCorners + "g " + name + "\n" + repeated("f 1 2 3\n", 1000)); }),
-            "s.obj:6: the name 'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx...' of 1000000 characters belongs to 1000 "
-            "faces (the name of every face contains it); choose a name of at most 255 characters");
-}
-
-TEST(HostileFiles, TheClosestOfManyAlikeNamesAreFound) {
-  std::vector<std::string> patches;
-  for (int i = 0; i < 20'000; ++i) patches.push_back("patch_with_a_similar_name_" + std::to_string(i));
-  const std::vector<std::string_view> names(patches.begin(), patches.end());
-  EXPECT_EQ(text::nearest_names(names, "PATCH_with_a_similar_nam_17", 2),
-            (std::vector<std::string_view>{names[17], names[1]}));
-  EXPECT_EQ(text::edit_distance("kitten", "sitting", 10), 3U);
-  EXPECT_EQ(text::edit_distance("kitten", "sitting", 3), 3U);
-  EXPECT_GT(text::edit_distance("kitten", "sitting", 2), 2U);
-}
-
 TEST(HostileFiles, MaterialFilesThatAreNoneAreNeverWaitedFor) {
   const TemporaryDirectory directory;
   ASSERT_EQ(::mkfifo((directory.path() / "pipe.mtl").c_str(), 0600), 0);
@@ -104,7 +76,7 @@ TEST(HostileFiles, MaterialFilesThatAreNoneAreNeverWaitedFor) {
         directory.write("s.obj", std::string("mtllib ") + library + "\n" + kCorners + "usemtl a\nf 1 2 3\n");
     const Scene scene = read_obj(path);
     ASSERT_EQ(scene.warnings().size(), 1U) << library;
-    EXPECT_NE(scene.warnings()[0].what.find("cannot be read"), std::string::npos);
+    EXPECT_HOLDS(scene.warnings()[0].what, "cannot be read");
     EXPECT_FALSE(scene.materials()[1].emits());
   }
 }
@@ -120,6 +92,188 @@ TEST(HostileFiles, AHugeGridIsRefusedBeforeItIsBegun) {
       "a smaller patch");
   EXPECT_NE(error_of([&] { return grid_receivers(scene, all, {1000, 1000}); }), "no error");
   EXPECT_EQ(grid_receivers(scene, all, {3, 2}).size(), 60U);
+}
+
+// --- names that control terminals, change the reading direction or are no valid text ---
+
+namespace fs = std::filesystem;
+
+// Escape, a C1 control, a right-to-left mark, HTML markup; not UTF-8: Latin-1, an overlong slash, half a surrogate
+// pair.
+const std::string kLight = "l\u00E4mp\x1B[31m\xC2\x9B\xE2\x80\xAE<&>\"'%";
+const std::string kFloor = "fl\x07oor\x7F,::error::\xED\xA0\x80";
+const std::string kShownLight = "l\u00E4mp\\x1b[31m\\u009b\\u202e<&>\"'%";
+const std::string kRoom =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 2\nv 1 0 2\nv 1 1 2\nv 0 1 2\nv .2 .2 1\nv .8 .2 1\nv .8 .8 1\n"
+    "g " +
+    kFloor + "\nf 1 2 3 4\ng " + kLight + "\nf 8 7 6 5\ng b\xFC\x1B\x81\xC0\xAF\nf 9 10 11\n";
+
+struct Ran {
+  int exit_code = 0;
+  std::string output;
+  std::string error;
+};
+
+class HostileNames : public testing::Test {
+ protected:
+  Ran run(const std::vector<std::string>& arguments) const {
+    const fs::path out = directory_.path() / "stdout";
+    const RunningProgram program(EXACTFF_PROGRAM, arguments, directory_.path() / "stderr", [&out] {
+      if (std::freopen(out.c_str(), "w", stdout) == nullptr) std::_Exit(125);
+    });
+    const int exit_code = program.wait();
+    return {exit_code, text_of(out), program.error()};
+  }
+  Ran expect_harmless(const std::vector<std::string>& arguments, int exit_code = 0) const {
+    Ran run = this->run(arguments);
+    EXPECT_EQ(run.exit_code, exit_code) << run.error;
+    EXPECT_TRUE(is_harmless(run.output)) << run.output;
+    EXPECT_TRUE(is_harmless(run.error)) << run.error;
+    return run;
+  }
+  std::vector<std::string> point(const std::vector<std::string>& more) const {
+    return joined(
+        {"point", room_, "--at", ".5", ".5", "0", "--normal", "0", "0", "1", "--on", kFloor, "--source", kLight}, more);
+  }
+  fs::path truth() const {
+    fs::path file = directory_.path() / "truth.csv";
+    const Ran made = run({"truth", room_, "--receivers", receivers_, "--source", kLight, "-o", file.string()});
+    EXPECT_EQ(made.exit_code, 0) << made.error;
+    return file;
+  }
+
+  // Lines of visible characters only. The JSON parser accepts only well-formed UTF-8.
+  static bool is_harmless(const std::string& text) {
+    std::string letters;
+    for (const char c : text) {
+      if ((static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7F) return false;
+      letters += c == '\n' || c == '"' || c == '\\' ? 'x' : c;
+    }
+    for (const char* act : {"\u0080", "\u0085", "\u009B", "\u202E", "\uFFFE"}) {
+      if (text.find(act) != std::string::npos) return false;
+    }
+    return nlohmann::json::accept('"' + letters + '"');
+  }
+
+  const TemporaryDirectory directory_;
+  const std::string room_ = directory_.write("r\x1B\xE4oom.obj", kRoom).string();
+  const std::string receivers_ =
+      directory_.write("receivers.csv", "id,x,y,z,nx,ny,nz\n\"r\x1B\xE4,::error::\",.5,.5,0,0,0,1\nb,.1,.1,0,0,0,1\n");
+};
+
+TEST_F(HostileNames, AreSeenInLists) {
+  const Ran list = expect_harmless({"info", room_});
+  EXPECT_HOLDS(list.output, kShownLight);
+  expect_harmless({"info", room_, "--patches", "faces"});
+}
+
+TEST_F(HostileNames, AreSeenInComplaints) {
+  expect_harmless({"info", "no\x1B[2J\xE4.obj"}, 2);
+  expect_harmless(point({"--source", "x\x1B\xC2\x9B"}), 2);
+  expect_harmless({"\x1B[2J\xE4"}, 2);                          // reported by the parser of flags
+  expect_harmless({"info", room_, "--no\x1B\xE2\x80\xAE"}, 2);  // this too
+  expect_harmless(point({"--at", "1", "2", "3\x1B"}), 2);
+  const std::string bad = directory_.write("bad.obj", "v 0 0 \x1B[2J\xE4\xC2\x85\nf \xE2\x80\xAE 2 3\n").string();
+  EXPECT_HOLDS(expect_harmless({"info", bad}, 2).error, "\\x1b[2J\\xe4\\u0085");
+}
+
+TEST_F(HostileNames, ArriveInJson) {
+  const auto list = nlohmann::json::parse(expect_harmless({"info", room_, "--json"}).output);
+  EXPECT_EQ(list["patches"][1]["name"], kLight);
+  EXPECT_EQ(list["patches"][2]["name"], "b\u00FC\x1B\u0081\u00C0\u00AF");
+  const auto result = nlohmann::json::parse(expect_harmless(point({"--json", "--explain"})).output);
+  EXPECT_EQ(result["sources"][0]["source"], list["patches"][1]["name"]);
+}
+
+TEST_F(HostileNames, ArriveInPictures) {
+  const fs::path picture = directory_.path() / "view.svg";
+  expect_harmless(point({"--svg", picture.string()}));
+  const std::string svg = text_of(picture);
+  EXPECT_TRUE(is_harmless(svg));
+  EXPECT_HOLDS(svg, "l\u00E4mp\\x1b[31m\\u009b\\u202e&lt;&amp;&gt;&quot;'%");
+}
+
+TEST_F(HostileNames, AreReadBackFromTruthFiles) {
+  const std::string file = truth().string();
+  EXPECT_HOLDS(text_of(file), "\"r\x1B\u00E4,::error::\"") << "Latin-1 is converted";
+  EXPECT_TRUE(text::is_utf8(text_of(file))) << "and so is the name of the scene's file";
+  const fs::path junit = directory_.path() / "j.xml", json = directory_.path() / "j.json";
+  expect_harmless({"check", file, file, "--max-abs", "0", "--junit", junit.string(), "--json", json.string()});
+  EXPECT_TRUE(is_harmless(text_of(junit)));
+  EXPECT_EQ(nlohmann::json::parse(text_of(json))["overall"]["rows"], 2);
+}
+
+TEST_F(HostileNames, AreSeenInReports) {
+  const fs::path folder = directory_.path() / "study\xE4";
+  expect_harmless({"compare", room_, "--receivers", receivers_, "--source", kLight, "--no-methods", "--eps-b", ".1",
+                   "--threads", "1", "-o", folder.string()});
+  std::string page = text_of(folder / "report.html");
+  EXPECT_HOLDS(page, "l\u00E4mp\\x1b[31m");
+  std::replace(page.begin(), page.end(), '\t', ' ');  // of gnuplot
+  EXPECT_TRUE(is_harmless(page));
+  for (const auto& file : fs::directory_iterator(folder)) EXPECT_TRUE(text::is_utf8(text_of(file))) << file;
+}
+
+// --- Faces with tens of thousands of vertices in shapes that make simple algorithms quadratic ---
+
+Ring whole_ring(std::size_t count) {
+  Ring ring(count);
+  std::iota(ring.begin(), ring.end(), 0U);
+  return ring;
+}
+
+constexpr std::size_t kLarge = 30'000;
+
+Vertices comb() {
+  Vertices vertices{{0, -1, 0}, {kLarge / 2, -1, 0}};
+  for (std::size_t i = kLarge / 2 - 1; i-- > 0;) {
+    const auto x = static_cast<double>(i);
+    vertices.push_back({x + 0.5, 1000, 0});
+    vertices.push_back({x, 0, 0});
+  }
+  return vertices;
+}
+
+// Nested V-shaped teeth: the ear of each would contain all inner ones.
+Vertices chevrons() {
+  Vertices vertices;
+  for (std::size_t i = 0; i < kLarge / 6; ++i) {
+    const auto y = -static_cast<double>(i);
+    for (const Vec3& p : {Vec3{-1000, 1000.3, 0}, Vec3{0, 0.3, 0}, Vec3{1000, 1000.3, 0}, Vec3{1000, 999.7, 0},
+                          Vec3{0, -0.3, 0}, Vec3{-1000, 999.7, 0}}) {
+      vertices.push_back({p.x, p.y + y, 0});
+    }
+  }
+  vertices.push_back({-1001, 1000 - static_cast<double>(kLarge / 6), 0});
+  vertices.push_back({-1001, 1001, 0});
+  return vertices;
+}
+
+Vertices wavy(Vertices vertices) {
+  for (Vec3& v : vertices) v.z = 0.001 * std::sin(12.9898 * v.x + 78.233 * v.y);
+  return vertices;
+}
+
+// Sufficient for near-linear time, too little for quadratic time.
+void expect_cut_quickly(const Vertices& vertices, FaceShape shape) {
+  const std::clock_t start = std::clock();
+  const CutFace face = cut_face(vertices, {whole_ring(vertices.size())});
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  EXPECT_FALSE(face.fault) << face.fault->what;
+  EXPECT_EQ(face.shape, shape);
+  std::size_t sides = 0;
+  for (const ConvexPart& part : face.parts) sides += part.corners.size() - 2;
+  EXPECT_EQ(sides, vertices.size() - 2);
+  if (kAtFullSpeed) {
+    EXPECT_LT(seconds, 2.5);
+  }
+}
+
+TEST(LargePolygon, IsCutInNearlyLinearTimePlanarOrNot) {
+  for (const Vertices& vertices : {comb(), chevrons()}) {
+    expect_cut_quickly(vertices, FaceShape::kPlanar);
+    expect_cut_quickly(wavy(vertices), FaceShape::kTriangulated);
+  }
 }
 
 }  // namespace

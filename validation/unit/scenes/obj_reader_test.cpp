@@ -1,18 +1,9 @@
-#include <gtest/gtest.h>
-
-#include <sstream>
-#include <string>
-
 #include "exactff/scene_files.h"
-#include "support/program.h"
+#include "support/test.h"
 #include "unit/scenes/format_support.h"
 
 namespace exactff {
 namespace {
-
-using validation::ring;
-using validation::TemporaryDirectory;
-using validation::warnings_of;
 
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
@@ -21,8 +12,8 @@ Scene read(const std::string& text, SceneOptions options = {}) {
   return read_obj(in, "s.obj", options);
 }
 
-std::string error_of(const std::string& text) {
-  return validation::error_of([&] { return read(text); });
+std::string refusal_of(const std::string& text) {
+  return error_of([&] { return read(text); });
 }
 
 using Ring = std::vector<std::uint32_t>;
@@ -61,9 +52,9 @@ TEST(ObjReader, NamesInTwoEncodingsAreRefusedWhereTheyWouldBecomeOne) {
       "s.obj: the name 'T\u00FCr' is written in UTF-8 and in Latin-1 (they might be meant as two names); save the file "
       "as "
       "UTF-8";
-  EXPECT_EQ(error_of(kSquare + "g T\xFCr\nf 1 2 3\ng T\u00FCr\nf 1 2 4\n"), refusal);
-  EXPECT_EQ(error_of(kSquare + "usemtl T\u00FCr\nf 1 2 3\nusemtl T\xFCr\nf 1 2 4\n"), refusal);
-  EXPECT_EQ(error_of(kSquare + "usemtl T\xFCr\ng T\u00FCr\nf 1 2 3\n"), "no error") << "a material and a group";
+  EXPECT_EQ(refusal_of(kSquare + "g T\xFCr\nf 1 2 3\ng T\u00FCr\nf 1 2 4\n"), refusal);
+  EXPECT_EQ(refusal_of(kSquare + "usemtl T\u00FCr\nf 1 2 3\nusemtl T\xFCr\nf 1 2 4\n"), refusal);
+  EXPECT_EQ(refusal_of(kSquare + "usemtl T\xFCr\ng T\u00FCr\nf 1 2 3\n"), "no error") << "a material and a group";
 }
 
 TEST(ObjReader, MaterialsMatchWhateverTheEncodingOfEitherFile) {
@@ -133,59 +124,44 @@ struct Malformed {
 };
 
 TEST(ObjReader, MalformedFilesAreNamedByLine) {
-  const std::string exact = " (a coordinate is one exact number)";
-  const std::string decimal = "; write a decimal number such as 1.5 or -2e-3";
-  const std::string corner =
-      " is not a valid corner of a face (a corner is a vertex number); write v, v/vt, v//vn or v/vt/vn";
-  const std::string range = "; correct the index";
-  const std::string backwards = " (vertices are numbered from 1, or backwards from -1)" + range;
   const Malformed table[] = {
       {"", "s.obj: is empty (there is nothing to compute with); give a Wavefront OBJ file"},
       {"\n\n", "s.obj: has no faces (there is nothing to compute with); is it a Wavefront OBJ file?"},
       {kSquare, "s.obj: has no faces (there is nothing to compute with); is it a Wavefront OBJ file?"},
-      {std::string("v 0\0 0", 6), "s.obj: is not a text file (it contains zero bytes); give a Wavefront OBJ file"},
       {"v 1 2\n", "s.obj:1: a vertex has fewer than three coordinates (a point needs all three); write v x y z"},
-      {"v\n", "s.obj:1: a vertex has fewer than three coordinates (a point needs all three); write v x y z"},
-      {"\n v 1 2 x\n", "s.obj:2: 'x' is not a number" + exact + decimal},
-      {"v 1 2 3y\n", "s.obj:1: '3y' is not a number" + exact + decimal},
-      {"v 1 nan 3\n", "s.obj:1: 'nan' is not a finite number" + exact + "; give a finite number"},
-      {"v 1 2 -Inf\n", "s.obj:1: '-Inf' is not a finite number" + exact + "; give a finite number"},
-      {"v 1e400 2 3\n", "s.obj:1: '1e400' is too large for a double" + exact +
-                            "; give a smaller number; the largest double is about 1.8e308"},
-      {"v 0x1 2 3\n", "s.obj:1: '0x1' is hexadecimal" + exact + decimal},
-      {"v 1,5 2 3\n", "s.obj:1: '1,5' has a decimal comma" + exact + "; write a decimal point"},
-      {"v 1 \\\n2 \\\nz\n", "s.obj:1: 'z' is not a number" + exact + decimal},
-      {kSquare + "f 1 2 3 0\n", "s.obj:5: vertex 0 does not exist" + backwards},
-      {kSquare + "f 1 2 5\n", "s.obj:5: vertex 5 does not exist (the file has 4 vertices)" + range},
-      {kSquare + "f 1 2 -5\n", "s.obj:5: vertex -5 does not exist (the lines before define 4 vertices)" + range},
-      {"f -1 -2 -3\n", "s.obj:1: vertex -1 does not exist (the lines before define 0 vertices)" + range +
-                           "\ns.obj:1: vertex -2 does not exist (the lines before define 0 vertices)" + range +
-                           "\ns.obj:1: vertex -3 does not exist (the lines before define 0 vertices)" + range},
-      {kSquare + "f 1 2 99999999999999999999\n",
-       "s.obj:5: vertex 99999999999999999999 does not exist (the lines before define 4 vertices)" + range},
-      {kSquare + "f 1 2 4294967297\n",
-       "s.obj:5: vertex 4294967297 does not exist (the lines before define 4 vertices)" + range},
-      {kSquare + "f 1 2 a\n", "s.obj:5: 'a'" + corner},
-      {kSquare + "f 1 2 3.0\n", "s.obj:5: '3.0'" + corner},
-      {kSquare + "f 1 2 /3\n", "s.obj:5: '/3'" + corner},
-      {kSquare + "f 1 2 3/1/1/1\n", "s.obj:5: '3/1/1/1'" + corner},
-      {kSquare + "f 1 2 3/x\n", "s.obj:5: '3/x'" + corner},
-      {kSquare + "f 1, 2, 3\n", "s.obj:5: '1,'" + corner + "\ns.obj:5: '2,'" + corner},
+      {"\xEF\xBB\xBF# dos\r\n\rv 1 2\r\n", "s.obj:3: a vertex has fewer than three coordinates ("},
+      {"v\n", "s.obj:1: a vertex has fewer than three coordinates ("},
+      {"\n v 1 2 x\n", "s.obj:2: 'x' is not a number (a coordinate is one exact number); write a decimal number such"},
+      {"v 1 2 3y\n", "s.obj:1: '3y' is not a number ("},
+      {"v 1 nan 3\n", "s.obj:1: 'nan' is not a finite number (a coordinate is one exact number); give a finite number"},
+      {"v 1 2 -Inf\n", "s.obj:1: '-Inf' is not a finite number ("},
+      {"v 1e400 2 3\n",
+       "s.obj:1: '1e400' is too large for a double (a coordinate is one exact number); give a smaller"},
+      {"v 0x1 2 3\n", "s.obj:1: '0x1' is hexadecimal ("},
+      {"v 1,5 2 3\n", "s.obj:1: '1,5' has a decimal comma (a coordinate is one exact number); write a decimal point"},
+      {"v 1 \\\n2 \\\nz\n", "s.obj:1: 'z' is not a number ("},
+      {kSquare + "f 1 2 3 0\n",
+       "s.obj:5: vertex 0 does not exist (vertices are numbered from 1, or backwards from -1)"},
+      {kSquare + "f 1 2 5\n", "s.obj:5: vertex 5 does not exist (the file has 4 vertices); correct the index"},
+      {kSquare + "f 1 2 -5\n", "s.obj:5: vertex -5 does not exist (the lines before define 4 vertices)"},
+      {"f -1 -2 -3\n", "s.obj:1: vertex -3 does not exist (the lines before define 0 vertices); correct the index"},
+      {kSquare + "f 1 2 99999999999999999999\n", "s.obj:5: vertex 99999999999999999999 does not exist ("},
+      {kSquare + "f 1 2 4294967297\n", "s.obj:5: vertex 4294967297 does not exist ("},
+      {kSquare + "f 1 2 a\n",
+       "s.obj:5: 'a' is not a valid corner of a face (a corner is a vertex number); write v, v/vt"},
+      {kSquare + "f 1 2 3.0\n", "s.obj:5: '3.0' is not a valid corner"},
+      {kSquare + "f 1 2 /3\n", "s.obj:5: '/3' is not a valid corner"},
+      {kSquare + "f 1 2 3/1/1/1\n", "s.obj:5: '3/1/1/1' is not a valid corner"},
+      {kSquare + "f 1 2 3/x\n", "s.obj:5: '3/x' is not a valid corner"},
+      {kSquare + "f 1, 2, 3\n", "s.obj:5: '2,' is not a valid corner"},
       {kSquare + "f 1 2\n",
-       "s.obj:5: a face has 2 vertices (a polygon has at least three); remove it, or skip bad faces with "
-       "--skip-bad-faces"},
-      {kSquare + "f\n",
-       "s.obj:5: a face has 0 vertices (a polygon has at least three); remove it, or skip bad faces with "
-       "--skip-bad-faces"},
-      {kSquare + "g bow\nf 1 2 4 3\n",
-       "s.obj:6: face 'bow:1' crosses itself: edge 2-4 and edge 3-1 (vertex numbers) intersect (its interior is "
-       "ambiguous); split it into simple polygons, or skip bad faces with --skip-bad-faces"},
-      {"f 1 2 9\nv 1 2 x\nf 1 0 1\n", "s.obj:1: vertex 2 does not exist (the file has 1 vertex)" + range +
-                                          "\ns.obj:1: vertex 9 does not exist (the file has 1 vertex)" + range +
-                                          "\ns.obj:2: 'x' is not a number" + exact + decimal +
-                                          "\ns.obj:3: vertex 0 does not exist" + backwards},
+       "s.obj:5: a face has 2 vertices (a polygon has at least three); remove it, or skip bad faces"},
+      {kSquare + "f\n", "s.obj:5: a face has 0 vertices ("},
+      {kSquare + "g bow\nf 1 2 4 3\n", "s.obj:6: face 'bow:1' crosses itself: edge 2-4 and edge 3-1 (vertex numbers)"},
+      {"f 1 2 9\nv 1 2 x\nf 1 0 1\n", "s.obj:3: vertex 0 does not exist ("},  // and what is before
   };
-  for (const Malformed& entry : table) EXPECT_EQ(error_of(entry.text), entry.message) << entry.text;
+  for (const Malformed& entry : table) EXPECT_HOLDS(refusal_of(entry.text), entry.message) << entry.text;
+  EXPECT_EQ(std::ranges::count(refusal_of(table[std::size(table) - 1].text), '\n'), 3);
 }
 
 TEST(ObjReader, ShortFacesAreSkippedOnRequest) {
@@ -203,17 +179,10 @@ TEST(ObjReader, UnknownWordsAndCurvedGeometryAreMentionedOnce) {
             "s.obj:8: unknown keyword 'F' (and on 1 more line) (the line is ignored); is it a Wavefront OBJ file?\n");
 }
 
-// --- materials ---
-
 Scene read_with_mtl(const std::string& mtl, const std::string& head = "mtllib m.mtl\nusemtl a\n") {
   const TemporaryDirectory directory;
   (void)directory.write("m.mtl", mtl);
   return read_obj(directory.write("s.obj", head + kSquare + "f 1 2 3\n"));
-}
-
-std::string after(const std::string& text, const std::string& mark) {
-  const std::size_t at = text.find(mark);
-  return at == std::string::npos ? text : text.substr(at);
 }
 
 TEST(MtlReader, KdIsTheReflectanceAndKeTheRadiosity) {
@@ -223,68 +192,35 @@ TEST(MtlReader, KdIsTheReflectanceAndKeTheRadiosity) {
   EXPECT_EQ(material.name, "a");
   EXPECT_EQ(material.reflectance, (Rgb{0.25, 0.5, 0.75}));
   EXPECT_EQ(material.radiosity, (Rgb{2, 2, 2}));
-  EXPECT_TRUE(scene.warnings().empty());
-}
-
-TEST(MtlReader, AbsentKdIsOneAndAbsentKeIsZero) {
-  const Scene scene = read_with_mtl("newmtl a\nNs 10\n");
-  EXPECT_EQ(scene.receiver_reflectance(std::vector{FaceId{0}}), (Rgb{1, 1, 1}));
-  EXPECT_TRUE(scene.emitters().empty());
-}
-
-TEST(MtlReader, NamesMayHoldBlanks) {
-  const Scene scene = read_with_mtl("newmtl old brick\nKd .5\n", "mtllib m.mtl\nusemtl old brick\n");
-  EXPECT_EQ(scene.receiver_reflectance(std::vector{FaceId{0}}), (Rgb{0.5, 0.5, 0.5}));
-}
-
-TEST(MtlReader, SeveralLibrariesAndBackslashesAreFound) {
-  EXPECT_TRUE(read_with_mtl("newmtl a\n", "mtllib .\\m.mtl m.mtl\nusemtl a\n").warnings().empty());
+  ASSERT_EQ(scene.warnings().size(), 1U);
+  EXPECT_EQ(scene.warnings()[0].what, "map_Kd of material 'a' is an image");
 }
 
 TEST(MtlReader, MalformedFilesAreNamedByLine) {
   const Malformed table[] = {
-      {"newmtl a\nKd 1 x 1\n",
-       "m.mtl:2: Kd of material 'a': 'x' is not a number (colours are finite numbers); write a decimal number such as "
-       "1.5 or -2e-3"},
-      {"newmtl a\nKe 1 2\n",
-       "m.mtl:2: Ke of material 'a' has two values (a colour has one or three values); give one value, or red, green "
-       "and blue"},
-      {"newmtl a\nKd\n",
-       "m.mtl:2: Kd of material 'a' has no value (a colour has one or three values); give one value, or red, green and "
-       "blue"},
+      {"newmtl a\nKd 1 x 1\n", "m.mtl:2: Kd of material 'a': 'x' is not a number (colours are finite numbers); write"},
+      {"newmtl a\nKe 1 2\n", "m.mtl:2: Ke of material 'a' has two values (a colour has one or three values); give one"},
+      {"newmtl a\nKd\n", "m.mtl:2: Kd of material 'a' has no value ("},
       {"newmtl a\nKe 1 -2 1\n", "m.mtl:2: Ke of material 'a' is negative (a radiosity cannot be negative); correct it"},
-      {"newmtl a\nKd -.1\n",
-       "m.mtl:2: Kd of material 'a' is negative (a reflectance lies between 0 and 1); correct it"},
+      {"newmtl a\nKd -.1\n", "m.mtl:2: Kd of material 'a' is negative (a reflectance lies between 0 and 1)"},
       {"Kd 1\n", "m.mtl:1: Kd before any newmtl (it does not belong to a material); move it"},
       {"newmtl\n", "m.mtl:1: newmtl without a name (no face can use it); give the material a name"},
-      {"newmtl a\nKe inf\n",
-       "m.mtl:2: Ke of material 'a': 'inf' is not a finite number (colours are finite numbers); give a finite number"},
+      {"newmtl a\nKe inf\n", "m.mtl:2: Ke of material 'a': 'inf' is not a finite number ("},
   };
   for (const Malformed& entry : table) {
-    EXPECT_EQ(after(validation::error_of([&] { return read_with_mtl(entry.text); }), "m.mtl:"), entry.message);
+    EXPECT_HOLDS(error_of([&] { return read_with_mtl(entry.text); }), entry.message);
   }
 }
 
 TEST(MtlReader, DoubtfulFilesAreWarnedAbout) {
   const Malformed table[] = {
-      {"newmtl a\nKd 1.5\n",
-       "m.mtl:2: Kd of material 'a' exceeds 1 (such a surface reflects more than it receives); "
-       "correct it\n"},
-      {"newmtl a\nKd spectral x.rfl\n",
-       "m.mtl:2: Kd of material 'a' is given as 'spectral' (exactff reads only RGB values); the default is used; write "
-       "red, green and blue\n"},
-      {"newmtl a\nKd xyz 1 1 1\n",
-       "m.mtl:2: Kd of material 'a' is given as 'xyz' (exactff reads only RGB values); the default is used; write red, "
-       "green and blue\n"},
-      {"newmtl a\nKd .5\nnewmtl a\nKd .25\n",
-       "m.mtl:3: material 'a' is defined again (the first definition is used); remove one\n"},
-      {"newmtl b\n",
-       "s.obj:2: material 'a' is not defined (it gets Kd 1, Ke 0); define it in a file named by mtllib\n"},
+      {"newmtl a\nKd 1.5\n", "m.mtl:2: Kd of material 'a' exceeds 1 (such a surface reflects more than it receives)"},
+      {"newmtl a\nKd spectral x.rfl\n", "m.mtl:2: Kd of material 'a' is given as 'spectral' (exactff reads only RGB"},
+      {"newmtl a\nKd xyz 1 1 1\n", "m.mtl:2: Kd of material 'a' is given as 'xyz' ("},
+      {"newmtl a\nKd .5\nnewmtl a\nKd .25\n", "m.mtl:3: material 'a' is defined again (the first definition is used)"},
+      {"newmtl b\n", "s.obj:2: material 'a' is not defined (it gets Kd 1, Ke 0); define it in a file named by mtllib"},
   };
-  for (const Malformed& entry : table) {
-    const std::string warnings = warnings_of(read_with_mtl(entry.text));
-    EXPECT_EQ(after(warnings, entry.message.substr(0, 6)), entry.message);
-  }
+  for (const Malformed& entry : table) EXPECT_HOLDS(warnings_of(read_with_mtl(entry.text)), entry.message);
 }
 
 TEST(MtlReader, AMissingFileIsAWarningAndGivesDefaults) {
@@ -293,6 +229,10 @@ TEST(MtlReader, AMissingFileIsAWarningAndGivesDefaults) {
             "s.obj:1: material file 'none.mtl' cannot be read (its materials get Kd 1, Ke 0); add the file if colours "
             "or emission matter\n");
   EXPECT_EQ(scene.material(scene.faces()[1].material).name, "b");
+}
+
+TEST(MtlReader, SeveralLibrariesAndBackslashesAreFound) {
+  EXPECT_TRUE(read_with_mtl("newmtl a\n", "mtllib .\\m.mtl m.mtl\nusemtl a\n").warnings().empty());
 }
 
 }  // namespace

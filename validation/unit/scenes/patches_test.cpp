@@ -1,43 +1,18 @@
 // Patches from geometry, and names for faces.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <map>
-#include <set>
-#include <string>
-#include <tuple>
-#include <vector>
-
 #include "exactff/scene.h"
 #include "exactff/scene_files.h"
-#include "generate/plain_scene.h"
-#include "generate/random.h"
-#include "support/complaint.h"
-#include "support/holds.h"
-#include "support/program.h"
 #include "support/random_scenes.h"
+#include "support/shapes.h"
+#include "support/test.h"
 #include "support/transform.h"
 
 namespace exactff::validation {
 namespace {
 
-using generate::PlainScene;
-using generate::Random;
-
-// To the group `things`, with the fronts outside.
-void add_box(PlainScene& scene, const Vec3& a, const Vec3& b) {
-  const Vec3 at[8] = {{a.x, a.y, a.z}, {b.x, a.y, a.z}, {a.x, b.y, a.z}, {b.x, b.y, a.z},
-                      {a.x, a.y, b.z}, {b.x, a.y, b.z}, {a.x, b.y, b.z}, {b.x, b.y, b.z}};
-  constexpr int kSides[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-  for (const auto& side : kSides) {
-    scene.add_ring(scene.patch("things"), {at[side[0]], at[side[1]], at[side[2]], at[side[3]]});
-  }
-}
-
 // Boxes with sides in triangles.
 PlainScene boxes(const std::vector<std::pair<Vec3, Vec3>>& corners) {
   PlainScene scene;
-  for (const auto& [low, high] : corners) add_box(scene, low, high);
+  for (const auto& [low, high] : corners) add_box(scene, "things", low, high);
   return in_triangles(scene);
 }
 
@@ -97,7 +72,7 @@ TEST(PatchesFromGeometry, HaveNamesThatNoOrderChanges) {
     PlainScene scene;
     for (int k = random.integer(2, 5); k > 0; --k) {
       const Vec3 at{random.integer(0, 9) * 4.0, random.integer(0, 9) * 4.0, 0.0};
-      add_box(scene, at, {at.x + 1, at.y + 1, at.z + random.integer(1, 3)});
+      add_box(scene, "things", at, {at.x + 1, at.y + 1, at.z + random.integer(1, 3)});
     }
     const auto shapes = [](const PlainScene& of, const char* way) {
       std::map<std::string, std::multiset<std::tuple<double, double, double>>> found;
@@ -117,7 +92,7 @@ TEST(PatchesFromGeometry, HaveNamesThatNoOrderChanges) {
 
 TEST(PatchesFromGeometry, RefuseOtherWays) {
   for (const char* way : {"", "Faces", "smooth:", "smooth:-1", "smooth:181", "smooth:x", "parts:2"}) {
-    EXPECT_TRUE(holds(complaint([&] { (void)scene_options(way); }), "is not a way to make patches")) << way;
+    EXPECT_HOLDS(complaint([&] { (void)scene_options(way); }), "is not a way to make patches") << way;
   }
 }
 
@@ -149,54 +124,25 @@ TEST(FaceNames, AreThoseThatSelectorsFind) {
   EXPECT_EQ(names_of(both), (std::vector<std::string>{"things", "top", "left"}));
 }
 
-TEST(FaceNames, OfPatchesThatKeepFacesAreTold) {
-  const Scene scene = generate::build(boxes({{{0, 0, 0}, {1, 2, 3}}}), {}, scene_options("faces"));
-  const auto warnings = [&](const std::string& text) {
-    const Scene named = with_names(scene, std::vector<FaceName>{face_name(text)});
-    return named.warnings().empty() ? std::string() : named.warnings().back().message();
-  };
-  EXPECT_TRUE(holds(warnings("things:1=things:2"),
-                    "the name 'things:1' is that of a patch of 1 face, and 1 face was added to it (faces of one name"));
-  EXPECT_TRUE(holds(warnings("things:1=normal:0,0,1"), "2 faces were added"));
-  EXPECT_EQ(warnings("things:1=things:1"), "");
-  EXPECT_EQ(warnings("new=things:1"), "");
-}
-
-TEST(PatchSummary, DoesNotDependOnTheOrderOfFaces) {
-  for (std::uint64_t s = 0; s < scaled_count(20); ++s) {
-    Random random(seed_of(s));
-    PlainScene scene;
-    for (int k = 0; k < 30; ++k) {
-      const Vec3 a{random.unit(), random.unit(), random.unit()};
-      scene.add_ring(scene.patch("soup"), {a, {a.x + 1, a.y, random.unit()}, {a.x, a.y + random.unit(), a.z + 0.1}});
-    }
-    const PatchSummary one = summarise(generate::build(scene), PatchId{0});
-    std::ranges::reverse(scene.patch("soup").faces);
-    const PatchSummary other = summarise(generate::build(scene), PatchId{0});
-    EXPECT_EQ(one.centre, other.centre);
-    EXPECT_EQ(one.area, other.area);
-  }
-}
-
 TEST(FaceNames, RefuseWhatCannotBeRead) {
   const Scene scene = generate::build(boxes({{{0, 0, 0}, {1, 2, 3}}}));
   const auto words = [&](const std::string& text) {
     return complaint([&] { (void)with_names(scene, std::vector<FaceName>{face_name(text)}); });
   };
-  EXPECT_TRUE(holds(words("a"), "is not NAME=SELECTOR"));
-  EXPECT_TRUE(holds(words("=box:0,0,0,1,1,1"), "is not NAME=SELECTOR"));
-  EXPECT_TRUE(holds(words("a=box:0,0,0,1,1"), "it has 6 numbers"));
-  EXPECT_TRUE(holds(words("a=box:0,0,0,1,1,x"), "'x' is not a number"));
-  EXPECT_TRUE(holds(words("a=normal:0,0,0"), "no direction"));
-  EXPECT_TRUE(holds(words("a=normal:0,0,1:200"), "from 0 to 180"));
-  EXPECT_TRUE(holds(words("a=plane:0,0,0,1"), "no normal"));
-  EXPECT_TRUE(holds(words("a=things:3-99"), "no range of the patch's faces 1 to 12"));
-  EXPECT_TRUE(holds(words("a=plane:0,0,1,1:-1"), "a distance is not negative"));
+  EXPECT_HOLDS(words("a"), "is not NAME=SELECTOR");
+  EXPECT_HOLDS(words("=box:0,0,0,1,1,1"), "is not NAME=SELECTOR");
+  EXPECT_HOLDS(words("a=box:0,0,0,1,1"), "it has 6 numbers");
+  EXPECT_HOLDS(words("a=box:0,0,0,1,1,x"), "'x' is not a number");
+  EXPECT_HOLDS(words("a=normal:0,0,0"), "no direction");
+  EXPECT_HOLDS(words("a=normal:0,0,1:200"), "from 0 to 180");
+  EXPECT_HOLDS(words("a=plane:0,0,0,1"), "no normal");
+  EXPECT_HOLDS(words("a=things:3-99"), "no range of the patch's faces 1 to 12");
+  EXPECT_HOLDS(words("a=plane:0,0,1,1:-1"), "a distance is not negative");
   for (const char* word : {"sky", "all", "(open)"}) {
-    EXPECT_TRUE(holds(words(std::string(word) + "=things:1"), "stands for something else"));
+    EXPECT_HOLDS(words(std::string(word) + "=things:1"), "stands for something else");
   }
-  EXPECT_TRUE(holds(words("a=nothing"), "there is no patch named"));
-  EXPECT_TRUE(holds(words("a=box:8,8,8,9,9,9"), "finds no face"));
+  EXPECT_HOLDS(words("a=nothing"), "there is no patch named");
+  EXPECT_HOLDS(words("a=box:8,8,8,9,9,9"), "finds no face");
 }
 
 TEST(FaceNames, ComeFromFilesAndFlagsAndStayInWhatIsWritten) {
@@ -212,11 +158,24 @@ TEST(FaceNames, ComeFromFilesAndFlagsAndStayInWhatIsWritten) {
   const auto patches = names_of(made);
   EXPECT_TRUE(std::ranges::find(patches, "light") == patches.end());
   const ProgramRun info = run_exactff({"info", room, "--patches", "parts"});
-  EXPECT_TRUE(holds(info.output, "tall_block/1")) << info.output;
-  EXPECT_TRUE(holds(info.output, "centre")) << info.output;
+  EXPECT_HOLDS(info.output, "tall_block/1");
+  EXPECT_HOLDS(info.output, "centre");
   const std::string bad = directory.write("bad", "a=light\nb\n").string();
-  EXPECT_TRUE(holds(run_exactff({"info", room, "--names", bad}).error, "bad:2: 'b' is not NAME=SELECTOR"));
+  EXPECT_HOLDS(run_exactff({"info", room, "--names", bad}).error, "bad:2: 'b' is not NAME=SELECTOR");
   EXPECT_EQ(run_exactff({"info", room, "--patches", "smooth:x"}).exit_code, 2);
+}
+
+TEST(FaceNames, OfPatchesThatKeepFacesAreTold) {
+  const Scene scene = generate::build(boxes({{{0, 0, 0}, {1, 2, 3}}}), {}, scene_options("faces"));
+  const auto warnings = [&](const std::string& text) {
+    const Scene named = with_names(scene, std::vector<FaceName>{face_name(text)});
+    return named.warnings().empty() ? std::string() : named.warnings().back().message();
+  };
+  EXPECT_HOLDS(warnings("things:1=things:2"),
+               "the name 'things:1' is that of a patch of 1 face, and 1 face was added to it (faces of one name");
+  EXPECT_HOLDS(warnings("things:1=normal:0,0,1"), "2 faces were added");
+  EXPECT_EQ(warnings("things:1=things:1"), "");
+  EXPECT_EQ(warnings("new=things:1"), "");
 }
 
 }  // namespace

@@ -2,13 +2,8 @@
 // with the definition: winding numbers and parities at points that lie on no edge.
 #include "scene/planar_region.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <random>
-#include <vector>
-
 #include "scene/triangulation.h"
+#include "support/test.h"
 
 namespace exactff {
 namespace {

@@ -1,17 +1,10 @@
-#include <gtest/gtest.h>
-
-#include <bit>
-
+// PLY and OFF files: what they mean, and what is refused.
 #include "exactff/scene_files.h"
+#include "support/test.h"
 #include "unit/scenes/format_support.h"
 
 namespace exactff {
 namespace {
-
-using validation::error_of;
-using validation::patch_names;
-using validation::ring;
-using validation::warnings_of;
 
 const std::string kPlyVertices = "element vertex 4\nproperty double x\nproperty double y\nproperty double z\n";
 const std::string kPlySquare = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
@@ -46,12 +39,11 @@ TEST(PlyReader, ReadsTextWithPolygons) {
 
 TEST(PlyReader, TriangleStripsAloneAreRefusedWithAConverter) {
   const std::string strips = "element tristrips 1\nproperty list int int vertex_indices\n";
-  EXPECT_NE(
-      ply_error(header(strips) + kPlySquare + "4 0 1 3 2\n").find("s.ply:8: triangle strips (tristrips) are not read"),
-      std::string::npos);
+  EXPECT_HOLDS(ply_error(header(strips) + kPlySquare + "4 0 1 3 2\n"),
+               "s.ply:8: triangle strips (tristrips) are not read");
   const Scene both = from_ply(header(kFaces + strips) + kPlySquare + "4 0 1 2 3\n4 0 1 3 2\n");
   EXPECT_EQ(both.faces().size(), 1U);
-  EXPECT_NE(warnings_of(both).find("are not read"), std::string::npos);
+  EXPECT_HOLDS(warnings_of(both), "are not read");
 }
 
 TEST(PlyReader, BinaryInBothByteOrdersIsTheSameScene) {
@@ -118,12 +110,6 @@ TEST(PlyReader, LineEndsOfAllKinds) {
   }
 }
 
-TEST(PlyReader, FacesMayComeBeforeVertices) {
-  const Scene scene =
-      from_ply("ply\nformat ascii 1.0\n" + kFaces + kPlyVertices + "end_header\n4 0 1 2 3\n" + kPlySquare);
-  EXPECT_EQ(ring(scene).size(), 4U);
-}
-
 struct BadPly {
   std::string bytes;
   std::string message;  // a part of it
@@ -153,8 +139,7 @@ TEST(PlyReader, MalformedHeadersAreNamedByLine) {
       {"ply\rformat ascii 1.0\relement vertex 1\nproperty int x\rend_header\r",
        "the lines of the header end differently"},
   };
-  for (const BadPly& bad : cases)
-    EXPECT_NE(ply_error(bad.bytes).find(bad.message), std::string::npos) << ply_error(bad.bytes);
+  for (const BadPly& bad : cases) EXPECT_HOLDS(ply_error(bad.bytes), bad.message);
 }
 
 TEST(PlyReader, MalformedLinesAreNamedAndAllFound) {
@@ -173,25 +158,23 @@ TEST(PlyReader, MalformedLinesAreNamedAndAllFound) {
       "s.ply:19: a face has 2 vertices (a polygon has at least three)",
       "s.ply:20: '2.5' is not a whole number",
   };
-  for (const char* message : messages) EXPECT_NE(found.find(message), std::string::npos) << message << "\nin " << found;
+  for (const char* message : messages) EXPECT_HOLDS(found, message) << message << "\nin " << found;
 }
 
 TEST(PlyReader, NoMemoryIsTakenOnTheHeadersWord) {
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     std::string text = header(kFaces, format) + kPlySquare;
     text.replace(text.find("vertex 4"), 8, "vertex 4000000000");
-    EXPECT_NE(ply_error(text).find("4000000000 times 'vertex' of at least "), std::string::npos);
+    EXPECT_HOLDS(ply_error(text), "4000000000 times 'vertex' of at least ");
     text = header(kFaces, format);
     text.replace(text.find("face 1"), 6, "face 9223372036854775807");
     text.replace(text.find("vertex 4"), 8, "vertex 0");
-    EXPECT_NE(ply_error(text + kPlySquare).find("9223372036854775807 times 'face'"), std::string::npos);
+    EXPECT_HOLDS(ply_error(text + kPlySquare), "9223372036854775807 times 'face'");
   }
   std::string bytes = header("element face 1\nproperty list uint int vertex_indices\n", "binary_little_endian");
   bytes += std::string(96, '\0') + raw(0xFFFFFFFFU);
-  EXPECT_NE(ply_error(bytes).find(": byte " + std::to_string(bytes.size() - 4) +
-                                  ": a list of 4294967295 items (only 0 bytes follow)"),
-            std::string::npos)
-      << ply_error(bytes);
+  EXPECT_HOLDS(ply_error(bytes),
+               ": byte " + std::to_string(bytes.size() - 4) + ": a list of 4294967295 items (only 0 bytes follow)");
 }
 
 TEST(PlyReader, EveryCutOffFileIsRefusedOrWarnedAbout) {
@@ -209,7 +192,7 @@ TEST(PlyReader, EveryCutOffFileIsRefusedOrWarnedAbout) {
       if (message != "no error") continue;
       EXPECT_NE(warnings_of(from_ply(whole.substr(0, length))), "") << length;
     }
-    EXPECT_NE(warnings_of(from_ply(whole + "7 7 7\n")).find("declares fewer"), std::string::npos);
+    EXPECT_HOLDS(warnings_of(from_ply(whole + "7 7 7\n")), "declares fewer");
   }
 }
 
@@ -220,12 +203,77 @@ TEST(PlyReader, BinaryFaultsAreNamedByByte) {
     bytes += raw(c);
   bytes += raw<std::uint8_t>(3) + raw(0) + raw(-1) + raw(4);
   const std::string found = ply_error(bytes);
-  EXPECT_NE(found.find("s.ply: byte " + std::to_string(start + 24) + ": a coordinate is not a finite number"),
-            std::string::npos);
-  EXPECT_NE(found.find("s.ply: byte " + std::to_string(start + 96) + ": vertex -1 does not exist"), std::string::npos);
-  EXPECT_NE(found.find("vertex 4 does not exist"), std::string::npos);
-  EXPECT_NE(ply_error(header(kFaces) + std::string("0 0 0\0", 6)).find("a zero byte in a text file"),
-            std::string::npos);
+  EXPECT_HOLDS(found, "s.ply: byte " + std::to_string(start + 24) + ": a coordinate is not a finite number");
+  EXPECT_HOLDS(found, "s.ply: byte " + std::to_string(start + 96) + ": vertex -1 does not exist");
+  EXPECT_HOLDS(found, "vertex 4 does not exist");
+  EXPECT_HOLDS(ply_error(header(kFaces) + std::string("0 0 0\0", 6)), "a zero byte in a text file");
+}
+
+const std::string kOffSquare = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+
+Scene from_off(const std::string& text, const std::string& name = "s.off") { return read_scene(text, name); }
+std::string off_error(const std::string& text) {
+  return error_of([&] { return from_off(text); });
+}
+
+TEST(OffReader, ReadsPolygons) {
+  const Scene scene = from_off("OFF\n4 2 0\n" + kOffSquare + "4 0 1 2 3\n3 0 1 2\n");
+  EXPECT_EQ(ring(scene), (std::vector<std::uint32_t>{0, 1, 2, 3}));
+  EXPECT_EQ(scene.faces()[1].line, 8U);
+  EXPECT_EQ(warnings_of(scene), "");
+}
+
+TEST(OffReader, OddSpellingsOfTheSameFileAgree) {
+  const std::string hash = from_off("OFF\n4 1 0\n" + kOffSquare + "4 0 1 2 3\n").hash();
+  const std::string spellings[] = {
+      "\xEF\xBB\xBF# a square\r\nOFF # keyword\r\n\r\n4 1\r\n0 0 0\r\n1 0 0 # corner\r\n1 1 0\r\n0 1 0\r\n4 0 1 2 "
+      "3\r\n",
+      "OFF 4 1 4\n" + kOffSquare + "4 0 1 2 3\n",
+      "OFF4 1 4\n" + kOffSquare + "4 0 1 2 3\n",
+      "COFF\n4 1 0\n0 0 0 255 0 0 255\n1 0 0 0 0 0 0\n1 1 0 1 1 1 1\n0 1 0 2 2 2 2\n4 0 1 2 3 0.5 0.5 0.5\n",
+      "STCNOFF\r4 1 0\r0 0 0 0 0 1\r1 0 0 0 0 1\r1 1 0 0 0 1\r0 1 0 0 0 1\r4 0 1 2 3\r",
+  };
+  for (const std::string& text : spellings) {
+    EXPECT_EQ(from_off(text).hash(), hash) << text;
+    EXPECT_EQ(from_off(text, "unnamed").hash(), hash) << text;
+  }
+}
+
+TEST(OffReader, MalformedFilesAreNamedByLine) {
+  struct Case {
+    std::string text;
+    std::string message;
+  };
+  const Case cases[] = {
+      {"4 1 0\n" + kOffSquare, "s.off:1: the first word is not OFF, but ''"},
+      {"4OFF\n1 1 1\n", "a file of kind '4OFF' (its points are not in three dimensions)"},
+      {"OFF BINARY\n", "a binary OFF file"},
+      {"OFF\n", "the file ends before its counts"},
+      {"OFF\n0 x 0\n", "s.off:2: 'x' is not a count"},
+      {"OFF\n-4 1 0\n", "s.off:2: '-4' is not a count"},
+      {"OFF\n4000000000 1 0\n" + kOffSquare,
+       "s.off:2: the file declares 4000000000 vertices or faces (only 24 bytes follow)"},
+      {"OFF\n4 4000000000 0\n" + kOffSquare, "the file declares 4000000000 vertices or faces"},
+      {"OFF\n4 1 0\n0 0 0\n1 0\n1 1 nan\n0 1 0\n3 0 1 2\n", "s.off:4: a vertex has fewer than three coordinates"},
+      {"OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 nan\n0 1 0\n3 0 1 2\n", "s.off:5: 'nan' is not a finite number"},
+      {"OFF\n4 1 0\n" + kOffSquare + "3 0 1 4\n",
+       "s.off:7: vertex 4 does not exist (the file has 4 vertices, counted from 0)"},
+      {"OFF\n4 1 0\n" + kOffSquare + "3 0 1 -1\n", "s.off:7: vertex -1 does not exist"},
+      {"OFF\n4 1 0\n" + kOffSquare + "3 0 1\n", "s.off:7: '' is not an index"},
+      {"OFF\n4 1 0\n" + kOffSquare + "-3 0 1 2\n", "s.off:7: '-3' is not the number of vertices of a face"},
+      {"OFF\n4 1 0\n" + kOffSquare + "4294967295 0 1 2\n", "'4294967295' is not the number of vertices of a face"},
+      {"OFF\n4 1 0\n" + kOffSquare + "2 0 1\n", "s.off:7: a face has 2 vertices"},
+      {"OFF\n4 2 0\n" + kOffSquare + "3 0 1 2\n", "s.off:7: the file ends after 1 of 2 faces"},
+      {"OFF\n4 1 0\n0 0 0\n1 1 1\n", "s.off:4: the file ends after 2 of 4 vertices"},
+      {"OFF\n4 0 0\n" + kOffSquare, "s.off: has no faces"},
+  };
+  for (const Case& bad : cases) EXPECT_HOLDS(off_error(bad.text), bad.message);
+}
+
+TEST(OffReader, WhatFollowsIsWarnedAbout) {
+  const std::string text = "OFF\n4 1 0\n" + kOffSquare + "4 0 1 2 3\n";
+  EXPECT_HOLDS(warnings_of(from_off(text + "3 0 1 2\n")), "s.off:8: the file goes on after its last face");
+  EXPECT_HOLDS(warnings_of(from_off(text.substr(0, text.size() - 1))), "does not end with a newline");
 }
 
 }  // namespace

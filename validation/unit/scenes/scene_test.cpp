@@ -1,17 +1,9 @@
 #include "exactff/scene.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <string>
-#include <vector>
-
-#include "support/complaint.h"
+#include "support/test.h"
 
 namespace exactff {
 namespace {
-
-using validation::complaint;
 
 // Patches: wall (faces 1 to 3, the second without area), "wall:1" (one face), lamp (emits, one face).
 SceneBuilder rooms(SceneOptions options = {}) {
@@ -31,13 +23,6 @@ SceneBuilder rooms(SceneOptions options = {}) {
 }
 
 constexpr PatchId kWall{0}, kWallOne{1}, kLamp{2}, kMixed{3};
-
-TEST(SceneNames, ANameSelectsAPatchAndNameColonKItsKthFace) {
-  const Scene scene = rooms().build();
-  EXPECT_EQ(scene.select("wall"), (Selection{kWall, {}}));
-  EXPECT_EQ(scene.select("wall:3"), (Selection{kWall, FaceId{3}}));  // the ignored second face counts
-  EXPECT_EQ(scene.select("lamp:1"), (Selection{kLamp, FaceId{4}}));
-}
 
 TEST(SceneNames, AnExactNameWins) {
   const Scene scene = rooms().build();
@@ -117,22 +102,6 @@ TEST(SceneNames, AnExactNameWinsOverAPattern) {
   EXPECT_EQ(all_like(scene, "b*"), Names{"box"});
 }
 
-TEST(SceneNames, PatchModeFacesMakesEveryFaceAPatch) {
-  const Scene scene = rooms({BadFaces::kReject, PatchMode::kFaces}).build();
-  ASSERT_EQ(scene.patches().size(), 7U);
-  EXPECT_EQ(scene.patches()[3].name, "wall:3");
-  EXPECT_EQ(scene.patches()[2].name, "wall:1:1");
-  EXPECT_EQ(scene.select("wall:3"), (Selection{PatchId{3}, {}}));
-  EXPECT_EQ(scene.name_of(FaceId{3}), "wall:3");
-  EXPECT_EQ(scene.face(FaceId{3}).number, 1U);
-  EXPECT_THROW((void)scene.select("wall"), InputError);
-}
-
-TEST(SceneMaterials, EmittersAreThePatchesWithAnEmittingFaceOfSomeArea) {
-  const Scene scene = rooms().build();
-  EXPECT_EQ(scene.emitters(), (std::vector<Selection>{{kLamp, {}}, {kMixed, {}}}));
-}
-
 TEST(SceneMaterials, SourceRadiosityIsKeOrOne) {
   const Scene scene = rooms().build();
   EXPECT_EQ(scene.source_radiosity(scene.select("lamp")), (Rgb{4, 2, 1}));
@@ -141,12 +110,6 @@ TEST(SceneMaterials, SourceRadiosityIsKeOrOne) {
   EXPECT_EQ(complaint([&] { (void)scene.source_radiosity(scene.select("mixed")); }),
             "rooms.obj:16: the faces of source 'mixed' differ in Ke ('mixed:1' has material 'bright', 'mixed:2' has "
             "'dim'; a source has one radiosity); name a single face, or put the faces into separate groups");
-}
-
-TEST(SceneMaterials, ReceiverReflectanceIsKdOfItsFaceOrOne) {
-  const Scene scene = rooms().build();
-  EXPECT_EQ(scene.receiver_reflectance(std::vector{FaceId{0}}), (Rgb{0.5, 0.25, 0.125}));
-  EXPECT_EQ(scene.receiver_reflectance({}), (Rgb{1, 1, 1}));
 }
 
 TEST(SceneFaces, IgnoredFacesAreKeptButStandForNothing) {
@@ -193,19 +156,6 @@ TEST(SceneBuilder, WarnsAboutFacesOutOfPlaneByMoreThanAMillionth) {
   }
 }
 
-TEST(SceneBuilder, TellsOfAllBentFacesAtOnce) {
-  SceneBuilder builder;
-  const MaterialId material = builder.add_material({});
-  for (const double height : {0.0, 0x1p-10, 0x1p-8}) {
-    const std::uint32_t first = static_cast<std::uint32_t>(builder.vertex_count());
-    for (const Vec3& v : {Vec3{0, 0, 0}, {1, 0, 0}, {1, 1, height}, {0, 1, 0}}) builder.add_vertex(v);
-    builder.add_face(builder.patch("a"), material, {{first, first + 1, first + 2, first + 3}});
-  }
-  const Scene scene = builder.build();
-  ASSERT_EQ(scene.warnings().size(), 1U);
-  EXPECT_EQ(scene.warnings()[0].what, "face 'a:2' and 1 more are out of plane by up to 0.00069 of the diameter");
-}
-
 TEST(SceneBuilder, CollectsEveryMistake) {
   SceneBuilder builder("api");
   const MaterialId material = builder.add_material({"black hole", {-1, 0, 0}, {}});
@@ -217,14 +167,6 @@ TEST(SceneBuilder, CollectsEveryMistake) {
             "api: vertex 2 is not finite (a coordinate is one exact number); give finite coordinates\n"
             "api: material 'black hole' has a negative or infinite Kd or Ke (reflectances and radiosities are finite "
             "and not negative); correct it");
-}
-
-TEST(SceneBuilder, RefusesIndicesBeyondTheVertices) {
-  SceneBuilder builder;
-  const MaterialId material = builder.add_material({});
-  builder.add_vertex({});
-  builder.add_face(builder.patch("a"), material, {{0, 0, 7}});
-  EXPECT_EQ(complaint([&] { (void)builder.build(); }), "face 'a:1' refers to vertex 8 (there are 1 vertices)");
 }
 
 TEST(SceneHash, DependsOnWhatAffectsValuesOnly) {
@@ -245,6 +187,14 @@ TEST(SceneHash, DependsOnWhatAffectsValuesOnly) {
 
 // Fixed values: truth files from other machines and versions must recognise their scenes.
 TEST(SceneHash, IsTheSameEverywhere) { EXPECT_EQ(rooms().build().hash(), "4b98b6de23c40d7a"); }
+
+TEST(SceneBuilder, RefusesIndicesBeyondTheVertices) {
+  SceneBuilder builder;
+  const MaterialId material = builder.add_material({});
+  builder.add_vertex({});
+  builder.add_face(builder.patch("a"), material, {{0, 0, 7}});
+  EXPECT_EQ(complaint([&] { (void)builder.build(); }), "face 'a:1' refers to vertex 8 (there are 1 vertices)");
+}
 
 }  // namespace
 }  // namespace exactff

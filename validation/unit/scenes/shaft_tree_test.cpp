@@ -1,17 +1,11 @@
 // The bounding-volume tree never loses a piece that may meet a half-space.
 #include "scene/shaft_tree.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <set>
-
-#include "generate/random.h"
+#include "support/shapes.h"
+#include "support/test.h"
 
 namespace exactff {
 namespace {
-
-using generate::Random;
 
 std::vector<Box> random_boxes(Random& random, std::size_t count, double scale) {
   std::vector<Box> boxes;
@@ -53,20 +47,6 @@ TEST(ShaftTree, FindsExactlyWhatATestOfEveryBoxFinds) {
     }
     ASSERT_EQ(found(tree, apex, shaft), expected);
   }
-}
-
-// The result is uncertain for a box that touches the half-space's plane or is within the error bounds.
-TEST(ShaftTree, TakesNothingForInsideThatMayNotBe) {
-  const Box box{{1, 0, 0}, {2, 1, 1}};
-  const HalfSpace plain{{1, 0, 0}, 0.5};
-  EXPECT_TRUE(ShaftTree::certainly_inside(box, {}, plain));
-  EXPECT_FALSE(ShaftTree::certainly_inside(box, {}, {{1, 0, 0}, 1.0}));
-  EXPECT_FALSE(ShaftTree::certainly_inside(box, {1, 0, 0}, {{1, 0, 0}, 0.0}));
-  EXPECT_FALSE(ShaftTree::certainly_inside(box, {}, {{1, 0, 0}, 0.5, 0.25}));
-  EXPECT_FALSE(ShaftTree::certainly_inside(box, {}, {{1, 0, 0}, 0.5, 0.0, 0.5}));
-  EXPECT_FALSE(ShaftTree::certainly_inside(box, {}, {{std::nan(""), 0, 0}, 0.5}));
-  const Box tiny{{0x1p-1000, 0, 0}, {0x1p-999, 0, 0}};
-  EXPECT_FALSE(ShaftTree::certainly_inside(tiny, {}, {{0x1p-100, 0, 0}, 0.0}));
 }
 
 TEST(ShaftTree, KeepsEverythingWhereArithmeticFails) {

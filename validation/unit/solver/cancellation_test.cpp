@@ -1,12 +1,8 @@
 // Long computations ask on the way whether to go on, and Ctrl-C ends the program at once.
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <functional>
 #include <thread>
-#include <vector>
 
 #include "exactff/adaptive.h"
 #include "exactff/exact.h"
@@ -16,14 +12,11 @@
 #include "exactff/receiver.h"
 #include "exactff/view.h"
 #include "files/parallel.h"
-#include "support/program.h"
+#include "support/test.h"
 #include "unit/outside/sanitized.h"
 
 namespace exactff {
 namespace {
-
-using validation::RunningProgram;
-using validation::TemporaryDirectory;
 
 // Cancels at the n-th question.
 struct Patience {
@@ -89,66 +82,6 @@ TEST_F(OnePair, CanBeCancelledInAWholeView) {
   EXPECT_THROW((void)view(scene_, kUp), Cancelled);
 }
 
-TEST(HooksOfThreads, NestAndEnd) {
-  const Scene scene = models::make_scene("soup:n=10");
-  const ExactSource source(scene, scene.select("source"));
-  const Patience outer(0);
-  const HooksOfThread cancelled(outer.hooks);
-  {
-    Patience inner;
-    const HooksOfThread not_cancelled(inner.hooks);
-    EXPECT_EQ(exact_form_factor(scene, kUp, source).status, Status::kCertified);
-    EXPECT_GT(inner.asked, 0U);
-  }
-  EXPECT_THROW((void)exact_form_factor(scene, kUp, source), Cancelled);
-}
-
-TEST(HooksOfThreads, HoldForTheThreadsOfALoop) {
-  const Scene scene = models::make_scene("soup:n=10");
-  const ExactSource source(scene, scene.select("source"));
-  const auto body = [&](std::size_t) { (void)exact_form_factor(scene, kUp, source); };
-  const Patience patience(5);
-  EXPECT_THROW(files::parallel_for(100, 2, "pairs", patience.hooks, body), Cancelled);
-  const HooksOfThread callers(patience.hooks);
-  EXPECT_THROW(files::parallel_for(100, 2, "pairs", {}, body), Cancelled) << "without hooks of its own";
-}
-
-TEST(Receivers, CanBeCancelledAndTellTheirProgress) {
-  const Scene scene = models::make_scene("soup:n=3000");
-  const std::vector<FaceId> floor = scene.faces_of(scene.select("floor")),
-                            occluders = scene.faces_of(scene.select("occ"));
-  const auto make = {
-      std::function([&] {
-        return grid_receivers(scene, floor, {40, 50});
-      }),
-      std::function([&] { return vertex_receivers(scene, occluders); }),
-      std::function([&] { return centre_receivers(scene, occluders); }),
-      std::function([&] { return sample_receivers(scene, floor, 2000, 1); }),
-  };
-  for (const auto& receivers : make) {
-    std::vector<Progress> told;
-    const Hooks telling{[&](const Progress& p) { told.push_back(p); }, {}};
-    std::size_t count = 0;
-    {
-      const HooksOfThread during(telling);
-      count = receivers().size();
-    }
-    ASSERT_GE(told.size(), 7U);
-    for (const Progress& p : told) {
-      EXPECT_EQ(p.stage, "receivers");
-      EXPECT_LE(p.done, p.total);
-    }
-    EXPECT_EQ(told[6].done, 7U * 256U);
-    EXPECT_LE(told.front().total, count);
-    const Patience patience(3);
-    const HooksOfThread during(patience.hooks);
-    EXPECT_THROW((void)receivers(), Cancelled);
-    EXPECT_EQ(patience.asked, 4U);
-  }
-}
-
-// --- the program ---
-
 class Interruption : public testing::Test {
  protected:
   // Sends the signal when the program has computed for a while. Returns what it said.
@@ -168,10 +101,7 @@ class Interruption : public testing::Test {
 };
 
 std::vector<std::string> long_point(const std::string& scene, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> all = {"point",    scene, "--at", "0", "0",        "0",
-                                  "--normal", "0",   "0",    "1", "--source", "source"};
-  all.insert(all.end(), more.begin(), more.end());
-  return all;
+  return joined({"point", scene, "--at", "0", "0", "0", "--normal", "0", "0", "1", "--source", "source"}, more);
 }
 
 TEST_F(Interruption, EndsOnePairOfThousandsOfDigits) {

@@ -1,26 +1,14 @@
 // Certified view factors: the quadrature's remainder and the formula in discs. view_factor_test.cpp has known values.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include "exactff/view_factors.h"
-#include "generate/plain_scene.h"
-#include "generate/random.h"
 #include "kernel/gauss.h"
+#include "support/shapes.h"
+#include "support/test.h"
 #include "unit/solver/known_factors.h"
 #include "unit/solver/visit_cells.h"
 #include "view_factors/certified_integral.h"
 
 namespace exactff {
 namespace {
-
-using generate::PlainScene;
-using validation::add;
-using validation::floor_and_wall;
-using validation::plates;
-using validation::plates_with_plate;
 
 ViewFactor certified(const Scene& scene, const char* from, const char* to, double accuracy,
                      std::size_t budget = 100000) {
@@ -47,8 +35,6 @@ TEST(CertifiedFactor, KeepsItsClaimInACrowd) {
     EXPECT_GE(coarse.upper, fine.lower);
   }
 }
-
-// --- The remainder ---
 
 using view_factors::cover_of_half_ellipse;
 using view_factors::quadrature_remainder;
@@ -89,8 +75,6 @@ TEST(CertifiedQuadrature, BoundsTheErrorOfAPoleAndNotByMuch) {
 
 // --- The formula in discs, judged by Arb's balls at the same points ---
 
-using validation::value_in_balls;
-using validation::visit_cells;
 using view_factors::Cell;
 using view_factors::DiscFormula;
 using view_factors::Formula;
@@ -101,7 +85,7 @@ TEST(DiscFormula, HoldsTheFormulaInBalls) {
   for (const auto& [scene, from, to] :
        {std::tuple{generate::build(turned), "below", "above"}, std::tuple{generate::build(turned), "turned", "above"},
         std::tuple{generate::build(floor_and_wall()), "floor", "wall"}}) {
-    generate::Random random(7);
+    Random random(7);
     std::size_t cells = 0;
     visit_cells(scene, from, to, [&](const Formula& formula, const Cell& cell) {
       ++cells;
@@ -120,35 +104,6 @@ TEST(DiscFormula, HoldsTheFormulaInBalls) {
     });
     EXPECT_GT(cells, 0U);
   }
-}
-
-// Each point has branches of its own: a wide angle, an edge that is seen from its other end, a disc that fails.
-TEST(DiscFormula, HasTheSameBitsFourAtATime) {
-  using view_factors::FourDiscs;
-  generate::Random random(8);
-  int judged = 0, failed = 0;
-  const auto judge = [&](const Formula& formula, const Cell& cell) {
-    DiscFormula discs(formula, cell);
-    discs.take({0, 1, 2, 2});
-    for (int i = 0; i < 200; ++i) {
-      FourDiscs s, t;
-      for (kernel::Disc& d : s) d = {random.unit(), std::ldexp(random.unit(), 1 - i % 10)};
-      for (kernel::Disc& d : t) d = {random.unit(), 0.0};
-      const FourDiscs found = discs.integrands(s, t);
-      FourDiscs one;
-      for (std::size_t k = 0; k < 4; ++k) one[k] = discs.value(s[k], t[k]) * discs.jacobian(s[k], t[k]);
-      const bool succeeds = std::all_of(one.begin(), one.end(), [](const kernel::Disc& d) { return is_finite(d); });
-      ++(succeeds ? judged : failed);
-      for (std::size_t k = 0; k < 4; ++k) {
-        EXPECT_EQ(is_finite(found[k]), succeeds);
-        EXPECT_TRUE(!succeeds || (found[k].centre == one[k].centre && found[k].radius == one[k].radius));
-      }
-    }
-  };
-  visit_cells(generate::build(plates_with_plate(1.0, 0.5, 0.75)), "below", "above", judge);
-  visit_cells(generate::build(floor_and_wall()), "floor", "wall", judge);
-  EXPECT_GT(judged, 100);
-  EXPECT_GT(failed, 20);
 }
 
 // On the real axis inside the ellipse, beyond the cell, where the map's Jacobian is larger.

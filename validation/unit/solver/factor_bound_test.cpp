@@ -1,16 +1,10 @@
 // What is known of a pair before any cell: a bound of its form factors, and the shaft between its boxes.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "exactff/exact.h"
 #include "exactff/receiver.h"
-#include "generate/plain_scene.h"
-#include "generate/random.h"
 #include "kernel/vec.h"
 #include "support/random_scenes.h"
+#include "support/shapes.h"
+#include "support/test.h"
 #include "unit/solver/factor_at.h"
 #include "view_factors/factor_bounds.h"
 #include "view_factors/left_out.h"
@@ -21,8 +15,6 @@
 namespace exactff::view_factors {
 namespace {
 
-using generate::PlainScene;
-using generate::Random;
 using validation::scaled_count;
 using validation::seed_of;
 
@@ -61,8 +53,6 @@ TEST(FactorBound, IsAtLeastEveryFormFactorOfTheCell) {
   EXPECT_GE(seeing, 40);
   EXPECT_GE(tight, seeing / 4) << "of small patches, it should be of the order of the factor";
 }
-
-// --- What occluders hide ---
 
 // A wall or a ceiling as the source, a floor or a part of it as the receiver, and triangles between: low ones, such
 // that stand at the wall, any.

@@ -2,19 +2,11 @@
 // take.
 #include "view_factors/interim_analyses.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <optional>
-#include <utility>
-#include <vector>
-
 #include "exactff/scene.h"
-#include "generate/plain_scene.h"
 #include "kernel/split_mix.h"
 #include "kernel/vec.h"
+#include "support/shapes.h"
+#include "support/test.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/prepared_patch.h"
 #include "view_factors/sampled_factor.h"
@@ -50,7 +42,7 @@ class AnalysesOfStrips : public testing::Test {
  protected:
   AnalysesOfStrips() : scene_(build()), exact_(scene_) {}
   static Scene build() {
-    generate::PlainScene plain;
+    PlainScene plain;
     plain.add_ring(plain.patch("left"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
     plain.add_ring(plain.patch("right"), {{2, 0, 0}, {3, 0, 0}, {2.5, 2, 0}});
     return generate::build(plain);
@@ -87,21 +79,6 @@ TEST_F(AnalysesOfStrips, HoldTheirMeansWhateverThePartsWeigh) {
       EXPECT_NEAR(of_all.analyse().value, 1.0, 1e-12);
     }
   }
-}
-
-TEST_F(AnalysesOfStrips, TakeNoMorePointsOrEffortThanTheyMay) {
-  Strip strip(parts(1.0, 1.0), exact_.units, 0.25, 0.5);
-  InterimAnalyses analyses(strip, exact_.units, kRisk, 0);
-  (void)analyses.analyse();
-  const std::size_t first = analyses.points();
-  EXPECT_GE(first, kPointsOfFirstAnalysis);
-  EXPECT_EQ(analyses.effort_of_point(), 300U);
-  EXPECT_FALSE(analyses.prepare(1e-6, kAnyEffort, 2000));
-  EXPECT_FALSE(analyses.prepare(0.05, 300 * first + 3000, 1 << 20));
-  ASSERT_TRUE(analyses.prepare_for_all(4000));
-  (void)analyses.analyse();
-  EXPECT_LE(analyses.points(), 4000U);
-  EXPECT_GT(analyses.points(), 3500U);
 }
 
 // Analyses before, of which the risk is one with theirs, make them wider.
@@ -146,7 +123,7 @@ TEST_F(AnalysesOfStrips, DoNotTakeNoiseForKnown) {
 
 // No interval is narrower than what is proved of the point factor asks for, however much the points agree.
 TEST(SampledMean, IsAsWideAsWhatIsProvedSays) {
-  generate::PlainScene plain;
+  PlainScene plain;
   plain.add_ring(plain.patch("below"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   plain.add_ring(plain.patch("above"), {{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}});
   const Scene scene = generate::build(plain);

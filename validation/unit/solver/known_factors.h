@@ -1,16 +1,11 @@
 // Scenes of few patches whose view factors are known.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "generate/plain_scene.h"
+#include "support/shapes.h"
+#include "support/test.h"
 
 namespace exactff::validation {
-
-inline void add(generate::PlainScene& scene, const std::string& name, const std::vector<Vec3>& corners) {
-  scene.add_ring(scene.patch(name), corners);
-}
 
 // Squares of this side, `gap` apart, fronts facing: "below" and "above".
 inline generate::PlainScene plates(double side, double gap) {
@@ -35,10 +30,12 @@ inline generate::PlainScene floor_and_wall() {
   return scene;
 }
 
-inline std::vector<Selection> all_patches(const Scene& scene) {
-  std::vector<Selection> patches;
-  for (std::size_t i = 0; i < scene.patches().size(); ++i) patches.push_back({PatchId(i), {}, scene.id()});
-  return patches;
-}
-
 }  // namespace exactff::validation
+
+namespace exactff {
+
+using validation::floor_and_wall;
+using validation::plates;
+using validation::plates_with_plate;
+
+}  // namespace exactff

@@ -1,17 +1,11 @@
 // A patch of triangles in one plane has the parts, and the factors, of the polygon that they make.
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "exactff/view_factors.h"
-#include "generate/plain_scene.h"
+#include "support/shapes.h"
+#include "support/test.h"
 #include "view_factors/prepared_patch.h"
 
 namespace exactff::view_factors {
 namespace {
-
-using generate::PlainScene;
 
 // The square from (x, y) to (x + 1, y + 1) at a height, with its front upwards or downwards: whole, or n x n squares
 // cut in two.
@@ -53,19 +47,6 @@ double area_of_patch(const Scene& scene, const char* name) {
   const ExactScene exact(scene);
   const std::vector<Part> parts = parts_of(exact, scene.select(name));
   return areas_of(exact, scene.select(name), parts).second;
-}
-
-TEST(PatchParts, OfTrianglesInOnePlaneAreFew) {
-  const Scene scene = three_plates(4);
-  const ExactScene exact(scene);
-  const std::vector<Part> parts = parts_of(exact, scene.select("floor"));
-  ASSERT_EQ(parts.size(), 1U);
-  EXPECT_EQ(parts.front().corners.size(), 4U);
-  EXPECT_TRUE(parts.front().is_piece);
-  EXPECT_EQ(faces_of(scene, parts.front()).size(), 32U);
-  EXPECT_NEAR(area_of_patch(scene, "floor"), 1.0, 1e-15);
-  // A single face stays what it is.
-  EXPECT_EQ(parts_of(exact, scene.select("floor:3")).front().corners.size(), 3U);
 }
 
 TEST(PatchParts, OfJoinedFacesThatOverlapOthersCountOnce) {

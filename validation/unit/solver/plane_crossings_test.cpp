@@ -1,17 +1,13 @@
-// Crossings with the source's plane: the double-double result is always right, and it declines if it cannot decide.
-// EXACTFF_TEST_SCALE multiplies the number of segments.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "generate/random.h"
+// Crossings with the source's plane: the double-double result is always right, or it declines. EXACTFF_TEST_SCALE
+// multiplies the number of segments.
 #include "support/random_scenes.h"
+#include "support/shapes.h"
+#include "support/test.h"
 #include "visibility/source_plane.h"
 
 namespace exactff::visibility {
 namespace {
 
-using generate::Random;
 using kernel::Rational;
 
 struct Segment {

@@ -1,25 +1,17 @@
 // Arithmetic in double-double with running error bounds: numbers, vectors and angles.
 #include "contour/quick_arithmetic.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-
-#include "generate/random.h"
 #include "support/random_scenes.h"
+#include "support/shapes.h"
+#include "support/test.h"
 #include "unit/solver/quick_contour_support.h"
 
 namespace exactff::contour {
 namespace {
 
 using namespace kernel::double_double;
-using generate::Random;
 using kernel::Integer;
 using kernel::Rational;
-
-// --- Numbers ---
 
 // Every operation, with numbers at the limits that their bounds allow. The bound of the operation must hold. If the
 // operands are exact, the bound must not be a hundred times too large for the worst of many cases.
@@ -67,20 +59,6 @@ TEST_F(Arithmetic, SumsKeepTheirBounds) {
   });
 }
 
-// Operands that cancel down to a few of their last bits, or completely.
-TEST_F(Arithmetic, SumsThatCancelKeepTheirBounds) {
-  for (std::uint64_t seed = 1; seed <= validation::scaled_count(4000); ++seed) {
-    Random random(validation::seed_of(seed));
-    const Operand x = operand(random, true);
-    const double hi = -x.bounded.hi * (1 + 0x1p-52 * static_cast<double>(random.below(5)));
-    const DoubleDouble y = two_sum(hi, hi * 0x1p-53 * random.between(-1, 1));
-    const Rational truth = x.truth + exactly(y.hi, y.lo);
-    ASSERT_LE(share(x.bounded + bounded(y, 0), truth), 1.0) << seed;
-    const DoubleDouble sum = accurate_sum(parts(x.bounded), y);
-    ASSERT_LE(abs(Rational(exactly(sum.hi, sum.lo) - truth)), abs(truth) * kernel::to_rational(0x1p-104)) << seed;
-  }
-}
-
 TEST_F(Arithmetic, ProductsKeepTheirBounds) {
   expect_sharp_bounds([](Random& random, bool exact) {
     const Operand x = operand(random, exact);
@@ -115,100 +93,6 @@ TEST_F(Arithmetic, RootsKeepTheirBounds) {
   });
 }
 
-// --- Vectors ---
-
-using Truth = std::array<Rational, 3>;
-
-struct VectorOperand {
-  Vector bounded;
-  Truth truth;
-};
-
-class VectorArithmetic : public Arithmetic {
- protected:
-  static VectorOperand vector_operand(Random& random, bool exact, double size = 1) {
-    VectorOperand result;
-    const double error = exact ? 0.0 : size * std::exp2(random.between(-100, -30));
-    for (int i = 0; i < 3; ++i) {
-      const double hi = random.between(-1, 1) * size;
-      result.bounded.c[i] = two_sum(hi, hi * 0x1p-53 * random.between(-1, 1));
-      const Rational shift = kernel::to_rational(random.one_in(2) ? error : -error);
-      result.truth[i] = exactly(result.bounded.c[i].hi, result.bounded.c[i].lo) + shift;
-    }
-    result.bounded = vector(result.bounded.c, error);
-    return result;
-  }
-
-  static double worst_share(const Vector& result, const Truth& truth) {
-    double worst = 0.0;
-    for (int i = 0; i < 3; ++i) {
-      worst = std::max(worst, share({result.c[i].hi, result.c[i].lo, result.error}, truth[i]));
-    }
-    return worst;
-  }
-};
-
-Truth true_combination(const Rational& l, const Truth& p, const Rational& m, const Truth& q) {
-  return {l * p[0] + m * q[0], l * p[1] + m * q[1], l * p[2] + m * q[2]};
-}
-
-TEST_F(VectorArithmetic, DifferencesKeepTheirBounds) {
-  expect_sharp_bounds([](Random& random, bool exact) {
-    const VectorOperand p = vector_operand(random, exact);
-    VectorOperand q = vector_operand(random, exact, std::exp2(random.between(-60, 0)));
-    if (random.one_in(2)) {  // near p
-      for (int i = 0; i < 3; ++i) q.truth[i] += p.truth[i];
-      q.bounded = difference(p.bounded, vector({-q.bounded.c[0], -q.bounded.c[1], -q.bounded.c[2]}, q.bounded.error));
-      if (exact) q.bounded.error = 0;  // the rounded sum is an exact operand
-      if (exact) {
-        for (int i = 0; i < 3; ++i) q.truth[i] = exactly(q.bounded.c[i].hi, q.bounded.c[i].lo);
-      }
-    }
-    return worst_share(difference(p.bounded, q.bounded), true_combination(1, p.truth, -1, q.truth));
-  });
-}
-
-TEST_F(VectorArithmetic, CrossProductsKeepTheirBounds) {
-  expect_sharp_bounds([](Random& random, bool exact) {
-    const VectorOperand p = vector_operand(random, exact);
-    const VectorOperand q = vector_operand(random, exact);
-    const auto component = [&](int j, int k) -> Rational { return p.truth[j] * q.truth[k] - p.truth[k] * q.truth[j]; };
-    return worst_share(cross(p.bounded, q.bounded), {component(1, 2), component(2, 0), component(0, 1)});
-  });
-}
-
-TEST_F(VectorArithmetic, CombinationsKeepTheirBounds) {
-  expect_sharp_bounds([](Random& random, bool exact) {
-    const VectorOperand p = vector_operand(random, exact);
-    const VectorOperand q = vector_operand(random, exact);
-    const Operand l = operand(random, exact || random.one_in(2));
-    const Operand m = operand(random, exact || random.one_in(2));
-    return worst_share(combination(l.bounded, p.bounded, m.bounded, q.bounded),
-                       true_combination(l.truth, p.truth, m.truth, q.truth));
-  });
-}
-
-// p is t q up to a relative difference between 2^-100 and 1.
-TEST_F(VectorArithmetic, NearCancellationsKeepTheirBounds) {
-  expect_sharp_bounds([](Random& random, bool exact) {
-    const VectorOperand q = vector_operand(random, exact);
-    VectorOperand p;
-    const double t = random.between(0.5, 2);
-    const double away = std::exp2(random.between(-100, 0));
-    for (int i = 0; i < 3; ++i) {
-      const Bounded product = t * Bounded{q.bounded.c[i].hi, q.bounded.c[i].lo};
-      const Bounded sum = product + Bounded{away * random.between(-1, 1)};
-      p.bounded.c[i] = {sum.hi, sum.lo};
-      p.truth[i] = exactly(sum.hi, sum.lo);
-    }
-    p.bounded = vector(p.bounded.c, 0.0);
-    return worst_share(near_cancellation(p.bounded, t, q.bounded),
-                       true_combination(1, p.truth, kernel::to_rational(-t), q.truth));
-  });
-}
-
-// --- Angles ---
-
 class Angle : public Arithmetic {};
 
 TEST_F(Angle, AnglesKeepTheirBounds) {
@@ -226,6 +110,33 @@ TEST_F(Angle, AnglesKeepTheirBounds) {
       ASSERT_TRUE(std::isfinite(angle.error)) << seed;
       ASSERT_TRUE(holds(angle, true_angle(sine.truth, cosine.truth))) << seed;
       ASSERT_TRUE(!exact || angle.error < 0x1p-99 * std::abs(angle.hi)) << seed;
+    }
+  }
+}
+
+// Both sides of every step of the table, in every octant; each of the four lanes has another step and octant, and has
+// the bits of one that is computed alone.
+TEST_F(Angle, OfEveryStepAndOctantHoldTheTruthInEveryLane) {
+  for (int k = 0; k <= 2 * kAtanSteps; ++k) {
+    const double step = static_cast<double>(k) / (2 * kAtanSteps);  // between two steps for odd k
+    const double ratios[] = {step, std::nextafter(step, -1), std::nextafter(step, 2), (37 * k) % 509 / 509.0};
+    for (int octant = 0; octant < 8; ++octant) {
+      Four sines{}, cosines{};
+      for (int i = 0; i < 4; ++i) {
+        const int o = (octant + i) % 8;
+        const double x = o & 1 ? -1.0 : 1.0, y = o & 2 ? -ratios[i] : ratios[i];
+        sines[i] = o & 4 ? x : y;
+        cosines[i] = o & 4 ? y : x;
+      }
+      const FourBounded four = atan2(FourBounded{sines, {}, {}}, FourBounded{cosines, {}, {}}, angle_constants());
+      for (int i = 0; i < 4; ++i) {
+        const Bounded found{four.hi[i], four.lo[i], four.error[i]};
+        const Bounded alone = atan2(Bounded{sines[i]}, Bounded{cosines[i]}, angle_constants());
+        ASSERT_EQ(std::memcmp(&found, &alone, sizeof found), 0) << k << ' ' << octant << ' ' << i;
+        if (sines[i] == 0.0) continue;  // an axis; declined if it is the negative one
+        ASSERT_TRUE(holds(found, true_angle(exactly(sines[i], 0), exactly(cosines[i], 0)))) << k << ' ' << octant;
+        ASSERT_LT(found.error, 0x1p-99 * std::abs(found.hi) + 8 * kUnderflow) << k << ' ' << octant << ' ' << i;
+      }
     }
   }
 }

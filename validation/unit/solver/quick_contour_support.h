@@ -2,20 +2,12 @@
 // of contour/quick_contour.h and its parts.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <utility>
-#include <vector>
-
 #include "contour/contour.h"
 #include "contour/quick_arithmetic.h"
 #include "contour/quick_contour.h"
 #include "exactff/enclosure.h"
 #include "generate/random.h"
+#include "support/test.h"
 
 namespace exactff::contour {
 

@@ -4,25 +4,20 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <vector>
-
+#include "contour/contour.h"
 #include "exactff/enclosure.h"
-#include "generate/random.h"
 #include "support/random_scenes.h"
+#include "support/shapes.h"
+#include "support/test.h"
 #include "unit/solver/quick_contour_support.h"
 
 namespace exactff::contour {
 namespace {
 
-using namespace kernel::double_double;
-using generate::Random;
 using kernel::ExactVec3;
 using kernel::Integer;
-using kernel::Rational;
 using kernel::sign;
+using namespace kernel::double_double;
 
 // Returns true if the double was determined.
 bool expect_the_truth(const Both& both) {
@@ -38,8 +33,6 @@ bool expect_the_truth(const Both& both) {
   }
   return found.has_value();
 }
-
-// --- Random loops ---
 
 struct Count {
   std::size_t loops = 0;
@@ -67,14 +60,12 @@ TEST(QuickContour, RoundsEveryTriangleOfModerateSize) {
     EXPECT_LT(both.quick().error, size * 0x1p-97);
     return both;
   });
-  RecordProperty("found", static_cast<int>(count.found));
   EXPECT_EQ(count.found, count.loops);
 }
 
 TEST(QuickContour, RoundsWhatCrossingsLeave) {
   const Count count = expect_the_truth_of(
       500, 2001, [](Random& random) { return cut_triangle(random, std::exp2(random.between(-8, 0))); });
-  RecordProperty("found", static_cast<int>(count.found));
   EXPECT_GT(count.found, count.loops * 99 / 100);
 }
 
@@ -91,7 +82,6 @@ TEST(QuickContour, EnclosesSlivers) {
     both.close_loop();
     return both;
   });
-  RecordProperty("found", static_cast<int>(count.found));
   EXPECT_GT(count.found, count.loops * 2 / 3);
 }
 
@@ -108,7 +98,6 @@ TEST(QuickContour, EnclosesLoopsNearTheHorizon) {
     both.close_loop();
     return both;
   });
-  RecordProperty("found", static_cast<int>(count.found));
   EXPECT_GT(count.found, count.loops / 3);
 }
 
@@ -124,7 +113,6 @@ TEST(QuickContour, EnclosesAnglesNearAHalfTurn) {
     both.close_loop();
     return both;
   });
-  RecordProperty("found", static_cast<int>(count.found));
   EXPECT_GT(count.found, count.loops * 9 / 10);
 }
 
@@ -151,11 +139,8 @@ TEST(QuickContour, EnclosesPiecesOfExactDirections) {
     }
     return both;
   });
-  RecordProperty("found", static_cast<int>(count.found));
   EXPECT_GT(count.found, count.loops * 8 / 10);
 }
-
-// --- Properties ---
 
 TEST(QuickContour, ANormalWithComponentsOfAnyRatioIsEnclosed) {
   Both both;
@@ -166,50 +151,6 @@ TEST(QuickContour, ANormalWithComponentsOfAnyRatioIsEnclosed) {
     EXPECT_TRUE(expect_the_truth(both));
   }
 }
-
-// --- Corners: differences of vertices, and exact directions ---
-
-TEST(QuickCorner, IsTheExactDifference) {
-  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    Random random(validation::seed_of(seed));
-    const Vec3 p = random_vector(random, std::exp2(random.between(-40, 40)));
-    const Vec3 q = random_vector(random, std::exp2(random.between(-40, 40)));
-    const int exponent = static_cast<int>(random.below(200)) - 100;
-    const QuickCorner corner = quick_corner(p, q, exponent);
-    EXPECT_EQ(corner.error, 0.0);
-    const std::array<double, 3> from = {q.x, q.y, q.z};
-    const std::array<double, 3> to = {p.x, p.y, p.z};
-    for (int i = 0; i < 3; ++i) {
-      const Rational difference = kernel::to_rational(to[i]) - kernel::to_rational(from[i]);
-      EXPECT_EQ(exactly(corner.hi[i], corner.lo[i]), kernel::times_power_of_two(difference, exponent)) << seed;
-    }
-  }
-}
-
-TEST(QuickCorner, OfAnExactDirectionKeepsItsErrorBound) {
-  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
-    Random random(validation::seed_of(seed));
-    ExactVec3 direction = random_direction(random, 1 + static_cast<int>(random.below(600)));
-    direction.y >>= static_cast<mp_bitcnt_t>(random.below(120));
-    if (is_zero(direction)) continue;
-    const QuickCorner corner = quick_corner(direction);
-    const long bits = bit_length(direction);
-    EXPECT_TRUE(bits > 106 || corner.error == 0.0) << seed;
-    EXPECT_LE(corner.error, 0x1p-105);
-    double largest = 0.0;
-    for (int i = 0; i < 3; ++i) {
-      const Rational lost =
-          kernel::times_power_of_two(Rational(direction[i]), -bits) - exactly(corner.hi[i], corner.lo[i]);
-      EXPECT_LE(abs(lost), kernel::to_rational(corner.error)) << seed;
-      EXPECT_EQ(corner.hi[i], corner.hi[i] + corner.lo[i]);
-      largest = std::max(largest, std::abs(corner.hi[i]));
-    }
-    EXPECT_GE(largest, 0.5);
-    EXPECT_LE(largest, 1.0);  // 1 - 2^-60 rounds to 1
-  }
-}
-
-// --- Declining ---
 
 Both one_piece(const ExactVec3& a, const ExactVec3& b) {
   Both both;
@@ -266,6 +207,42 @@ TEST(QuickContour, DeclinesCornersTooLargeOrTooSmall) {
   EXPECT_FALSE(with({0, 0, 0}, 0));
   EXPECT_FALSE(with({0, 1, std::nan("")}, 0));
   EXPECT_FALSE(with({0, kInfinity, 0}, 0));
+}
+
+// A declined piece invalidates its own sum in any position; lanes that repeat a piece invalidate none.
+TEST(QuickContour, SumsEveryNumberOfPiecesWhole) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Random random(validation::seed_of(seed));
+    Both both = cut_triangle(random, 1);
+    const std::vector<Part> loop = both.pieces;
+    both.pieces.clear();
+    for (std::size_t count = 1; count <= 13; ++count) {
+      both.pieces.push_back(loop[count % loop.size()]);
+      const QuickContour::Value value = both.quick();
+      ASSERT_TRUE(answers(value));
+      EXPECT_LT(value.error, 0x1p-94);
+      EXPECT_TRUE(enclosure_of(value).contains(both.ball())) << seed << ' ' << count;
+      Both spoilt = both;
+      spoilt.pieces[random.below(count)] = {0, 0, kA, kB};
+      EXPECT_FALSE(answers(spoilt.quick())) << seed << ' ' << count;
+    }
+  }
+}
+
+// The unit square (0,1)^2 at z = 1, as seen from the origin below.
+Enclosure of_square(long bits) {
+  const kernel::ExactVec3 corners[] = {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}};
+  ContourIntegral contour({0, 0, 1});
+  for (int i = 0; i < 4; ++i) contour.add({corners[i], corners[(i + 1) % 4]});
+  return EnclosureInside::of(contour.evaluate(bits));
+}
+
+TEST(Contour, RadiusShrinksWithThePrecision) {
+  const Enclosure coarse = of_square(64), fine = of_square(2000);
+  EXPECT_TRUE(coarse.overlaps(fine));
+  EXPECT_TRUE(coarse.decimals(15).has_value());
+  EXPECT_FALSE(coarse.decimals(25).has_value());
+  EXPECT_TRUE(fine.decimals(590).has_value());
 }
 
 }  // namespace

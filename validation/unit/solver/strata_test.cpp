@@ -1,27 +1,24 @@
 // Random points of patches: where they lie, and what their means are.
 #include "view_factors/strata.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <iterator>
 #include <ostream>
-#include <string>
-#include <vector>
 
 #include "exactff/scene.h"
-#include "generate/plain_scene.h"
 #include "kernel/vec.h"
-#include "unit/solver/add_numbers.h"
+#include "support/shapes.h"
+#include "support/test.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/prepared_patch.h"
 
 namespace exactff::view_factors {
 namespace {
 
-using generate::PlainScene;
+// The first one's control variate is given, the second one's is the first number. `share`: of the area, of the stratum.
+void add_numbers(StratifiedMean& mean, double a, double b, double control, double share) {
+  mean.add(a, control, control, 0.5 * share);
+  mean.add(b, a, a, 0.5 * share);
+}
 
 struct Patch {
   const char* name;
@@ -212,48 +209,179 @@ TEST(Strata, OfManyFacesShareTheirFacesWithoutBias) {
   EXPECT_GT(variance, 0.9 * spread);
 }
 
-// Of a unit square with other faces on it.
-class Contacts : public testing::Test {
- protected:
-  Contacts() { plain_.add_ring(plain_.patch("floor"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}); }
-  void add(std::vector<Vec3> ring) { plain_.add_ring(plain_.patch("other"), std::move(ring)); }
-
-  // The parts of the floor.
-  std::vector<Part> cut() {
-    const Scene scene = generate::build(plain_);
-    const ExactScene exact(scene);
-    std::vector<Part> parts = cut_at_contacts(exact, parts_of(exact, scene.select("floor")).front());
-    EXPECT_NEAR(area_of(parts), area_of(parts_of(exact, scene.select("floor"))), 1e-15);
-    return parts;
-  }
-  // Of the floor's area.
-  static double share(const Part& part, const std::vector<Part>& all) { return area_of({part}) / area_of(all); }
-
-  PlainScene plain_;
-};
-
 // However small: without its own stratum, few or no points would meet it.
-TEST_F(Contacts, ACornerThatAFacePiercesIsAStratum) {
-  add({{0.01, 0, -1}, {0, 0.01, -1}, {0, 0.01, 1}, {0.01, 0, 1}});
-  const std::vector<Part> parts = cut();
+TEST(Strata, ACornerThatAFacePiercesIsAStratum) {
+  PlainScene plain;
+  plain.add_ring(plain.patch("floor"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  plain.add_ring(plain.patch("other"), {{0.01, 0, -1}, {0, 0.01, -1}, {0, 0.01, 1}, {0.01, 0, 1}});
+  const Scene scene = generate::build(plain);
+  const ExactScene exact(scene);
+  const std::vector<Part> floor = parts_of(exact, scene.select("floor")), parts = cut_at_contacts(exact, floor.front());
   ASSERT_EQ(parts.size(), 2U);
-  const Strata strata = strata_of(parts, 36);
-  const auto is_corner = [&](const Stratum& s) { return s.area < 1e-4; };
-  EXPECT_EQ(std::ranges::count_if(strata.strata, is_corner), 1);
+  EXPECT_NEAR(area_of(parts), area_of(floor), 1e-15);
+  const auto is_corner = [](const Stratum& s) { return s.area < 1e-4; };
+  EXPECT_EQ(std::ranges::count_if(strata_of(parts, 36).strata, is_corner), 1);
 }
 
-TEST_F(Contacts, WhatHasNoLineOnItsFrontDoesNotCutIt) {
-  add({{0.25, 0, 0}, {0.25, 1, 0}, {0.25, 1, -1}, {0.25, 0, -1}});            // below
-  add({{0.5, 0, 0.125}, {0.5, 1, 0.125}, {0.5, 1, 1}, {0.5, 0, 1}});          // above
-  add({{0.75, 0.5, 0}, {0.75, 1, 1}, {0.75, 0, 1}});                          // on its tip
-  add({{2, 0.5, 0}, {3, 0.5, 0}, {3, 0.5, 1}, {2, 0.5, 1}});                  // beside
-  add({{1, 0.625, 0}, {2, 0.625, 0}, {2, 0.625, 1}, {1, 0.625, 1}});          // only its end touches it
-  add({{1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1}});                          // on its rim
-  add({{0.25, 0.25, 0}, {0.375, 0.25, 0}, {0.375, 0.5, 0}, {0.25, 0.5, 0}});  // in its plane
-  const std::vector<Part> parts = cut();
-  ASSERT_EQ(parts.size(), 1U);
-  EXPECT_TRUE(parts[0].is_piece);
-  EXPECT_FALSE(parts[0].is_cut);
+// --- Strata that are split where a function may be large ---
+
+class SplitStrataOf : public testing::TestWithParam<std::vector<Vec3>> {
+ protected:
+  static Scene build() {
+    PlainScene plain;
+    plain.add_ring(plain.patch("patch"), GetParam());
+    return generate::build(plain);
+  }
+
+  // Large near the first corner.
+  static double f(const Vec3& p) { return 1.0 / (1.0 + 50.0 * kernel::dot(p, p)); }
+  [[nodiscard]] double largest(const Tile& tile) const {
+    const std::vector<Vec3> corners = corners_of(parts_[tile.part], tile);
+    double result = 0.0;
+    for (const Vec3& corner : corners) {
+      // Its distance from the origin is at least that of a corner, less the tile's diameter.
+      double reach = 0.0;
+      for (const Vec3& other : corners) reach = std::max(reach, kernel::distance(corner, other));
+      const double nearest = std::max(0.0, kernel::length(corner) - reach);
+      result = std::max(result, 1.0 / (1.0 + 50.0 * nearest * nearest));
+    }
+    return result;
+  }
+
+  const Scene scene_ = build();
+  const ExactScene exact_{scene_};
+  const std::vector<Part> parts_ = parts_of(exact_, scene_.select("patch"));
+  const SplitStrata::SpanOf span_ = [this](const Tile& tile, bool) { return Span{.range = largest(tile)}; };
+};
+
+TEST_P(SplitStrataOf, ShareTheAreaAndHoldTheFunction) {
+  SplitStrata split(parts_, 36, span_);
+  const double area = split.strata().area;
+  for (int i = 0; i < 400; ++i) ASSERT_TRUE(split.split_largest_term());
+  double sum = 0.0;
+  for (std::size_t s = 0; s < split.strata().strata.size(); ++s) {
+    const Stratum& stratum = split.strata().strata[s];
+    sum += stratum.area;
+    ASSERT_EQ(stratum.end, stratum.begin + 1);
+    for (std::size_t n = 0; n < 4; ++n) {
+      Draws draws(1, s, n);
+      const Tile& tile = split.strata().tiles[stratum.begin];
+      const Vec3 at = point_at(parts_[tile.part], tile, draw_place(tile, draws), exact_.units).at;
+      EXPECT_LE(f(at), split.span(s).range);
+    }
+  }
+  EXPECT_NEAR(sum, area, 1e-12 * area);
+}
+
+// The mean over many analyses at split strata is that over very many equal ones.
+TEST_P(SplitStrataOf, LeaveTheMeanAsItIs) {
+  const auto mean = [&](const Strata& strata, std::size_t analysis) {
+    StratifiedMean result;
+    for (std::size_t s = 0; s < strata.strata.size(); ++s) {
+      double values[kDraws];
+      for (std::size_t d = 0; d < kDraws; ++d) {
+        Draws draws(analysis, s, d);
+        const Tile& tile = draw_tile(strata, strata.strata[s], d, draws);
+        values[d] = f(point_at(parts_[tile.part], tile, draw_place(tile, draws), exact_.units).at);
+      }
+      add_numbers(result, values[0], values[1], values[0], strata.strata[s].area / strata.area);
+    }
+    return result;
+  };
+  const double truth = mean(strata_of(parts_, 40000), 0).value;
+  SplitStrata split(parts_, 36, span_);
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(split.split_largest_term());
+  double sum = 0.0, square = 0.0;
+  constexpr std::size_t kAnalyses = 100;
+  for (std::size_t analysis = 1; analysis <= kAnalyses; ++analysis) {
+    const StratifiedMean found = mean(split.strata(), analysis);
+    sum += found.value;
+    square += found.square;
+  }
+  const double error = std::sqrt(square) / kAnalyses;
+  EXPECT_NEAR(sum / kAnalyses, truth, 5.0 * error + 1e-5);
+  EXPECT_LT(error, 1e-3 * truth);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, SplitStrataOf,
+                         testing::Values(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+                                         std::vector<Vec3>{{0, 0, 0}, {8, 0, 0}, {8, 1, 0}, {0, 1, 0}},
+                                         std::vector<Vec3>{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}},
+                                         std::vector<Vec3>{{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {1, 3, 0}, {0, 2, 0}}));
+
+// --- Intervals of means over strata, judged by numbers whose means are known ---
+
+// Strata of equal area. On each, a function is `high` on a share of it and 0 elsewhere.
+struct Spots {
+  std::vector<double> shares, high;
+
+  [[nodiscard]] double weight() const { return 1.0 / static_cast<double>(shares.size()); }
+  [[nodiscard]] double mean() const {
+    double sum = 0.0;
+    for (std::size_t s = 0; s < shares.size(); ++s) sum += weight() * shares[s] * high[s];
+    return sum;
+  }
+  // Each range is 1. `control`: of every stratum.
+  StratifiedMean analyse(std::mt19937_64& random, double control, double expected) const {
+    StratifiedMean result{.expected = expected};
+    std::uniform_real_distribution<double> uniform;
+    for (std::size_t s = 0; s < shares.size(); ++s) {
+      const auto draw = [&] { return uniform(random) < shares[s] ? high[s] : 0.0; };
+      const double a = draw();
+      add_numbers(result, a, draw(), control, weight());
+    }
+    return result;
+  }
+};
+
+Spots spots(std::size_t count, double share, double high = 1.0) {
+  return {std::vector(count, share), std::vector(count, high)};
+}
+
+// The probability with which an interval of risk 0.2 misses the mean.
+double missed(const Spots& of, double control, double expected) {
+  constexpr int kAnalyses = 1000;
+  constexpr double kRisk = 0.2;
+  std::mt19937_64 random(7);
+  int missed = 0;
+  for (int i = 0; i < kAnalyses; ++i) {
+    const StratifiedMean mean = of.analyse(random, control, expected);
+    missed += std::abs(mean.value - of.mean()) > mean.error(0.5 * of.weight(), kRisk) ? 1 : 0;
+  }
+  return static_cast<double>(missed) / kAnalyses;
+}
+
+// None of 72 numbers meets anything.
+TEST(StratifiedMean, WhatNoNumberHasMetCounts) {
+  StratifiedMean mean;
+  for (int s = 0; s < 36; ++s) add_numbers(mean, 0.0, 0.0, 0.0, 1.0 / 36.0);
+  const double error = mean.error(0.5 / 36.0, 1e-6), least = std::log(2e6) / 72.0;
+  EXPECT_GT(error, least);
+  EXPECT_LT(error, 1.02 * least);
+  EXPECT_LT(std::pow(1.0 - error, 72.0), 1e-6)
+      << "the probability that 72 draws miss a set of this share, evenly spread";
+  EXPECT_NEAR(mean.error(0.0625 / 36.0, 1e-6), 0.125 * error, 1e-12) << "of a function that is an eighth as large";
+}
+
+// Rare, and common; all alike, and different; whatever the control variates, and what was expected.
+TEST(StratifiedMean, IntervalsMissNoMoreThanTheirRisk) {
+  std::mt19937_64 random(1);
+  std::vector<Spots> all;
+  for (const double share : {0.002, 0.01, 0.03, 0.1, 0.5, 0.9, 0.999}) all.push_back(spots(60, share));
+  for (const double high : {0.1, 0.5}) all.push_back(spots(60, 0.5, high));
+  Spots mixed;
+  for (int s = 0; s < 60; ++s) {
+    mixed.shares.push_back(std::uniform_real_distribution<double>()(random));
+    mixed.high.push_back(std::uniform_real_distribution<double>()(random));
+  }
+  all.push_back(mixed);
+  const double r = 0.5 / 60.0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (const double control : {0.0, 0.5, 1.0}) {
+      for (const double expected : {0.0, 2.0 * r * r, 30.0 * r * r})
+        EXPECT_LT(missed(all[i], control, expected), 0.2) << i;
+    }
+  }
 }
 
 }  // namespace

@@ -1,11 +1,5 @@
 // View factors from patch to patch with known values.
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "exactff/exact.h"
 #include "exactff/matrix.h"
@@ -13,18 +7,12 @@
 #include "exactff/receiver.h"
 #include "exactff/scene_files.h"
 #include "exactff/view_factors.h"
-#include "generate/plain_scene.h"
-#include "support/complaint.h"
+#include "support/shapes.h"
+#include "support/test.h"
 #include "unit/solver/known_factors.h"
 
 namespace exactff {
 namespace {
-
-using generate::PlainScene;
-using validation::add;
-using validation::floor_and_wall;
-using validation::plates;
-using validation::plates_with_plate;
 
 Selection named(const Scene& scene, const char* name) { return scene.select(name); }
 
@@ -55,27 +43,6 @@ TEST(ViewFactor, OfParallelSquaresIsTheKnownOne) {
   expect_factor(plates(1.0, 10.0), "below", "above", 0.00316205683875760162512871788517);
   expect_factor(plates(1.0, 100.0), "below", "above", 3.18288667328291964442604e-5);
   expect_factor(plates(1.0, 1000.0), "below", "above", 3.18309673977380257770e-7);
-}
-
-// A square with a hole, and the square that fills the hole, both ways.
-TEST(ViewFactor, OfAFrameAndOfWhatFillsItAddUp) {
-  PlainScene scene;
-  const std::vector<Vec3> hole{{0.25, 0.5, 1}, {0.5, 0.75, 1}, {0.75, 0.5, 1}, {0.5, 0.25, 1}};
-  add(scene, "below", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
-  scene.add_rings(scene.patch("frame"), {{{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}}, hole});
-  add(scene, "plug", hole);
-  const Scene built = generate::build(scene);
-  const auto factor = [&](const char* from, const char* to) {
-    return view_factor(built, named(built, from), named(built, to), {.accuracy = 1e-8});
-  };
-  const ViewFactor frame = factor("below", "frame"), plug = factor("below", "plug");
-  const double whole = 0.199824895698387;  // of unit squares, 1 apart
-  EXPECT_LE(frame.lower + plug.lower, whole);
-  EXPECT_GE(frame.upper + plug.upper, whole);
-  const ViewFactor back = factor("frame", "below");
-  EXPECT_NEAR(back.area_from, 0.875, 1e-15);
-  EXPECT_LE(back.lower * back.area_from, frame.upper);
-  EXPECT_GE(back.upper * back.area_from, frame.lower);
 }
 
 TEST(ViewFactor, OfSquaresWithACommonEdgeIsTheKnownOne) {
@@ -131,7 +98,7 @@ TEST(ViewFactor, WhereThreeEdgesMeetIsBounded) {
 
 matrix::Factors matrix_of(const std::string& file, double accuracy, bool certify = false) {
   const Scene scene = read_scene(EXACTFF_DATA_DIR "/scenes/formats/" + file);
-  const std::vector<Selection> all = validation::all_patches(scene);
+  const std::vector<Selection> all = all_patches(scene);
   return matrix::compute(scene, all, all, {.factors = {.accuracy = accuracy, .certify = certify}}).factors;
 }
 
@@ -155,12 +122,6 @@ TEST(ViewFactor, OfTheLShapedRoomIsTheKnownOneAndRowsAddUpToOne) {
     EXPECT_GE(matrix.at(0, 5).upper, 0.1823559036685958);
     expect_rows_to_hold_one(matrix, 1e-8);
   }
-}
-
-TEST(ViewFactor, RowsOfOtherRoomsOfView3DAddUpToOne) {
-  expect_rows_to_hold_one(matrix_of("facet.vs3", 1e-6), 1e-6);
-  expect_rows_to_hold_one(matrix_of("box345.vs3", 1e-4), 1e-4);
-  expect_rows_to_hold_one(matrix_of("gunter1.vs3", 1e-4), 1e-4);
 }
 
 TEST(ViewFactor, ProvesZeros) {
@@ -221,30 +182,6 @@ TEST(ViewFactor, OfACrowdIsByPointsAsSoonAsTheyAreCheaper) {
   const ViewFactor both = view_factor(scene, from, to, {.accuracy = 1e-6, .budget = 2000});  // cells that have paused
   EXPECT_LE(both.lower, f.upper);
   EXPECT_GE(both.upper, f.lower);
-}
-
-// Of the cells that are not known when the limit is reached, points tell more than bounds do, and no other thing.
-TEST(ViewFactor, ByPointsAtCellsIsNarrowerAndAsTrue) {
-  PlainScene roof;
-  add(roof, "below", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
-  add(roof, "above", {{0, 1, 1}, {0.7, 1, 1.3}, {0.7, 0, 1.3}, {0, 0, 1}});
-  add(roof, "above", {{0.7, 1, 1.3}, {1, 1, 0.9}, {1, 0, 0.9}, {0.7, 0, 1.3}});
-  for (const PlainScene& plain : {plates(1.0, 1.0), roof}) {
-    const Scene scene = generate::build(with_slats(plain));
-    const Selection from = named(scene, "below"), source = named(scene, "above");
-    const ViewFactor truth = view_factor(scene, from, source, {.accuracy = 4e-3});
-    ASSERT_TRUE(truth.accurate);
-    std::size_t by_points = 0;
-    for (const std::size_t budget : {200, 1000}) {
-      const ViewFactor f = view_factor(scene, from, source, {.accuracy = 1e-9, .budget = budget});
-      EXPECT_LE(f.lower, truth.upper) << budget;
-      EXPECT_GE(f.upper, truth.lower) << budget;
-      const ViewFactor cells =
-          view_factor(scene, from, source, {.accuracy = 1e-9, .budget = budget, .sample_crowds = false});
-      by_points += f.way == Way::kPoints && f.upper - f.lower < 0.25 * (cells.upper - cells.lower) ? 1 : 0;
-    }
-    EXPECT_GE(by_points, 2U);
-  }
 }
 
 // Two Gauss rules agree by chance on a cell near an edge. The truth is what certified enclosures of both directions
@@ -319,9 +256,8 @@ TEST(ViewFactor, RefusesAreasThatNoDoubleHolds) {
   }
   for (const double side : {1e300, 0x1p-600}) {
     const Scene built = generate::build(plates(side, side));
-    const std::string told =
-        validation::complaint([&] { (void)view_factor(built, named(built, "below"), named(built, "above")); });
-    EXPECT_NE(told.find("patch below has no area that a double can hold"), std::string::npos) << told;
+    const std::string told = complaint([&] { (void)view_factor(built, named(built, "below"), named(built, "above")); });
+    EXPECT_HOLDS(told, "patch below has no area that a double can hold");
   }
 }
 

@@ -1,17 +1,20 @@
 // The exact method step by step: the outcome, the candidates, and which faces hide something.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <string>
+#include <stdexcept>
 
 #include "exactff/exact.h"
-#include "generate/plain_scene.h"
+#include "exactff/models.h"
+#include "exactff/region.h"
+#include "support/shapes.h"
 #include "support/solve.h"
+#include "support/test.h"
+#include "visibility/source_plane.h"
 
 namespace exactff {
 namespace {
 
-using generate::PlainScene;
+using validation::solve;
 using Corners = std::vector<Vec3>;
 
 // Source [-1,1]^2 at z = 1 facing down, receiver at the origin facing up.
@@ -81,39 +84,6 @@ TEST(VisibleBoundary, TheReceiversOwnFaceNeitherOccludesNorIlluminates) {
   }
 }
 
-TEST(VisibleBoundary, FacesSeenEdgeOnOrBeyondOrInTheSourcesPlaneHideNothing) {
-  const Corners edge_on = {{-0.3, 0, 0.2}, {0.4, 0, 0.2}, {0.4, 0, 0.9}, {-0.3, 0, 0.9}};
-  const Corners through_x = {{-1, 0, -1}, {1, 0, -1}, {1, 0, 0.9}, {-1, 0, 0.9}};
-  const Corners coplanar = square(0.5, 1.0);
-  const Corners farther = square(0.5, std::nextafter(1.0, 2.0));
-  const Corners behind_x = square(5.0, -0.5);
-  for (const Corners& harmless : {edge_on, through_x, coplanar, farther, behind_x}) {
-    EXPECT_EQ(value_of(scene_with({harmless})), open_value());
-    for_each_engine(scene_with({harmless}), [](const PlaneRecord& record) { EXPECT_EQ(record.candidates, 0U); });
-  }
-}
-
-TEST(VisibleBoundary, AFaceThroughTheSourcesPlaneHidesWithItsNearPartOnly) {
-  // A vertical wall at x = 0.5 from z = 0.5 up through the source: its part below z = 1 shades x > 0.5.
-  const Corners wall = {{0.5, -4, 0.5}, {0.5, 4, 0.5}, {0.5, 4, 3}, {0.5, -4, 3}};
-  const PlainScene scene = scene_with({wall});
-  PlainScene half = scene_with({});
-  half.patches.clear();
-  half.add_ring(half.patch("source"), {{-1, 1, 1}, {0.5, 1, 1}, {0.5, -1, 1}, {-1, -1, 1}});
-  EXPECT_EQ(value_of(scene), value_of(half));
-  for_each_engine(scene, [](const PlaneRecord& record) { EXPECT_EQ(record.clipped, 1U); });
-}
-
-TEST(VisibleBoundary, OccludersThatMeetInAnEdgeHideAllTogether) {
-  const Corners left = {{-0.5, -0.5, 0.5}, {0, -0.5, 0.5}, {0, 0.5, 0.5}, {-0.5, 0.5, 0.5}};
-  const Corners right = {{0, -0.5, 0.5}, {0.5, -0.5, 0.5}, {0.5, 0.5, 0.5}, {0, 0.5, 0.5}};
-  const Corners longer = {{0, -0.75, 0.5}, {0.5, -0.75, 0.5}, {0.5, 0.75, 0.5}, {0, 0.75, 0.5}};
-  for (const Corners& other : {right, longer}) {
-    expect_outcome(scene_with({left, other}), Outcome::kHiddenByUnion);
-    EXPECT_EQ(validation::solve(scene_with({left, other})).status, Status::kZero);
-  }
-}
-
 // The first face of the source is covered, the second is not.
 TEST(VisibleBoundary, WhatHidesOneFaceOfTheSourceDoesNotHideTheOther) {
   PlainScene two = scene_with({});
@@ -145,29 +115,138 @@ TEST(VisibleBoundary, ADiscWithHorizonThroughItKeepsTheUpperPart) {
   }
 }
 
-TEST(VisibleBoundary, StagesTellWhatWasLeftOut) {
-  const auto ran_by = [](Engine engine, const PlainScene& scene, const std::string& stage) {
-    for (const StageNote& note : stages(record_by(engine, scene))) {
-      if (note.stage == stage) return note.ran;
+// --- What is seen of a source, as a value: it gives what separate searches give, in every bit ---
+
+const Receiver kReceiver{.point = {0.3, 0.1, 0.0}, .normal = {0.1, 0.2, 1.0}, .on = {}, .id = {}};
+
+Scene soup() { return models::make_scene("soup:n=60,floor=0"); }
+
+void expect_same(const FormFactor& a, const FormFactor& b) {
+  EXPECT_EQ(a.value, b.value);
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.visible_fraction, b.visible_fraction);
+  EXPECT_EQ(a.planes.size(), b.planes.size());
+}
+
+TEST(VisibleRegion, GivesAllMeasuresOfOneSearch) {
+  const Scene scene = soup();
+  const ExactSource source(scene, scene.select("source"));
+  for (const Engine engine : {Engine::kEdges, Engine::kBoolean}) {
+    VisibleRegion region(scene, kReceiver, source, {.engine = engine, .visible_fraction = true});
+    EXPECT_FALSE(region.empty());
+    for (const Measure& measure : {Measure{}, Measure{.kind = MeasureKind::kSolidAngle},
+                                   Measure{.kind = MeasureKind::kOvercast, .up = {0.3, 0.1, 1.0}}, Measure{}}) {
+      const FormFactor alone =
+          exact_form_factor(scene, kReceiver, source, {.engine = engine, .measure = measure, .visible_fraction = true});
+      expect_same(region.form_factor(measure), alone);
     }
-    ADD_FAILURE() << "no stage " << stage;
-    return false;
-  };
-  const PlainScene open = scene_with({});
-  const PlainScene cut = scene_with({square(0.25, 0.5)});
-  const PlainScene hidden = scene_with({square(0.5, 0.5)});
-  for (const Engine engine : validation::kEngines) {
-    SCOPED_TRACE(to_string(engine));
-    const auto ran = [&](const PlainScene& scene, const std::string& stage) { return ran_by(engine, scene, stage); };
-    const std::string work = engine == Engine::kEdges ? "edges" : "projection and Booleans";
-    EXPECT_FALSE(ran(open, work));
-    EXPECT_TRUE(ran(open, "contour"));
-    EXPECT_TRUE(ran(cut, work));
-    EXPECT_FALSE(ran(cut, "horizon clip"));
-    EXPECT_FALSE(ran(hidden, work));
-    EXPECT_FALSE(ran(hidden, "contour"));
-    EXPECT_TRUE(ran(hidden, "total occlusion"));
+    EXPECT_THROW((void)region.form_factor({.sphere = true}), std::invalid_argument);
   }
+}
+
+TEST(VisibleRegion, GivesTheGradientOfTheSameArcs) {
+  const Scene scene = soup();
+  const ExactSource source(scene, scene.select("source"));
+  const ExactOptions options{.gradient = true, .vertices = true};
+  const FormFactor alone = exact_form_factor(scene, kReceiver, source, options);
+  VisibleRegion first(scene, kReceiver, source);
+  VisibleRegion region = std::move(first);
+  const double value = region.form_factor().value;
+  const Gradient gradient = region.gradient(options);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(gradient.position[axis].value, alone.gradient->position[axis].value);
+    EXPECT_EQ(gradient.normal[axis].value, alone.gradient->normal[axis].value);
+  }
+  ASSERT_EQ(gradient.vertices.size(), alone.gradient->vertices.size());
+  for (std::size_t v = 0; v < gradient.vertices.size(); ++v) {
+    EXPECT_EQ(gradient.vertices[v].vertex, alone.gradient->vertices[v].vertex);
+    EXPECT_EQ(gradient.vertices[v].position[2].value, alone.gradient->vertices[v].position[2].value);
+  }
+  EXPECT_EQ(region.form_factor().value, value);
+  EXPECT_THROW((void)first.empty(), std::logic_error);
+}
+
+TEST(VisibleRegion, OfASphereGivesMeasuresOfSpheresAlone) {
+  const Scene scene = soup();
+  const ExactSource source(scene, scene.select("source"));
+  const ExactOptions options{.measure = {.kind = MeasureKind::kSolidAngle, .sphere = true}};
+  VisibleRegion region(scene, kReceiver, source, options);
+  expect_same(region.form_factor(options.measure), exact_form_factor(scene, kReceiver, source, options));
+  EXPECT_THROW((void)region.form_factor(), std::invalid_argument);
+  EXPECT_THROW((void)region.gradient(), std::invalid_argument);
+  EXPECT_THROW(region.find(scene, kReceiver, source, {.engine = Engine::kBoth}), std::invalid_argument);
+}
+
+// As seen from x, arcs end where others begin.
+TEST(VisibleRegion, HasArcsOnTheirLinesInSpace) {
+  const Scene scene = soup();
+  const ExactSource source(scene, scene.select("source"));
+  const VisibleRegion region(scene, kReceiver, source);
+  const auto arcs = region.arcs();
+  ASSERT_GT(arcs.size(), 4U);
+  std::size_t before_the_source = 0;
+  for (const RegionArc& arc : arcs) {
+    const double height = scene.vertices()[scene.face(scene.faces_of(scene.select("source")).front()).rings[0][0]].z;
+    EXPECT_LE(arc.from.z, height * (1.0 + 1e-12));
+    before_the_source += arc.from.z < 0.999 * height ? 1 : 0;
+    const auto meets = [&](const RegionArc& other) {
+      const Vec3 &x = kReceiver.point, &p = arc.to, &q = other.from;
+      const double a = (p.x - x.x) / (p.z - x.z) - (q.x - x.x) / (q.z - x.z);
+      const double b = (p.y - x.y) / (p.z - x.z) - (q.y - x.y) / (q.z - x.z);
+      return std::abs(a) + std::abs(b) < 1e-12;
+    };
+    EXPECT_TRUE(std::ranges::any_of(arcs, meets));
+  }
+  EXPECT_GT(before_the_source, 0U);
+}
+
+// --- sources with several faces, or with a hole ---
+
+// A rectangle at height z that faces down.
+Corners rectangle(double x0, double x1, double y0, double y1, double z) {
+  return {{x0, y1, z}, {x1, y1, z}, {x1, y0, z}, {x0, y0, z}};
+}
+
+PlainScene source_of(const std::vector<Corners>& faces) {
+  PlainScene scene;
+  for (const Corners& face : faces) scene.add_ring(scene.patch("source"), face);
+  return scene;
+}
+
+Enclosure form_factor(const Corners& face) { return solve(source_of({face})).enclosure; }
+
+// Two balls of about 90 bits, or sums of such balls, that contain the same number.
+void expect_equal(const Enclosure& a, const Enclosure& b) {
+  EXPECT_TRUE(a.overlaps(b)) << a.midpoint() << " and " << b.midpoint();
+  EXPECT_LT(a.upper() - a.lower(), 0x1p-50);
+  EXPECT_LT(b.upper() - b.lower(), 0x1p-50);
+}
+
+TEST(SourcePlane, StepsInParallelPlanesCountEachForItself) {
+  const Corners low = rectangle(-1, 0, -1, 1, 1);
+  const Corners high = rectangle(0, 1, -1, 1, 2);
+  const PlainScene plain = source_of({low, high});
+  const Scene scene = generate::build(plain);
+  EXPECT_EQ(visibility::group_by_plane(scene, scene.faces_of(scene.select("source"))).size(), 2U);
+  Enclosure sum = form_factor(low);
+  sum += form_factor(high);
+  expect_equal(solve(plain).enclosure, sum);
+}
+
+TEST(SourcePlane, AnOverlapCountsOnceInTheVisibleFraction) {
+  PlainScene plain = source_of({rectangle(-1, 0.5, -1, 1, 1), rectangle(-0.5, 1, -1, 1, 1)});
+  EXPECT_EQ(solve(plain, {.visible_fraction = true}).visible_part, VisiblePart::kAll);
+  plain.add_ring(plain.patch("right_half"), rectangle(0, 1, -1, 1, 0.5));
+  EXPECT_EQ(solve(plain, {.visible_fraction = true}).visible_fraction, 0.5);
+}
+
+TEST(SourcePlane, AHoleGivesNothing) {
+  const Corners inner = rectangle(-0.5, 0.25, -0.5, 0.75, 1);
+  PlainScene framed;
+  framed.add_rings(framed.patch("source"), {rectangle(-1, 1, -1, 1, 1), inner});
+  Enclosure sum = solve(framed).enclosure;
+  sum += form_factor(inner);
+  expect_equal(sum, form_factor(rectangle(-1, 1, -1, 1, 1)));
 }
 
 // More than are compared one by one, and in another order than the input's.

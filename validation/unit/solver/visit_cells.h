@@ -1,11 +1,8 @@
 // The smooth cells of a pair of patches, and their formulas in balls.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <optional>
-
 #include "kernel/ball.h"
+#include "support/test.h"
 #include "view_factors/cell_view.h"
 #include "view_factors/formula.h"
 #include "view_factors/prepared_patch.h"
@@ -58,3 +55,10 @@ inline Ball value_in_balls(const view_factors::Formula& formula, const view_fact
 }
 
 }  // namespace exactff::validation
+
+namespace exactff {
+
+using validation::value_in_balls;
+using validation::visit_cells;
+
+}  // namespace exactff

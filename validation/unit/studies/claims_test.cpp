@@ -1,9 +1,6 @@
 // The study of our own claims, on few scenes.
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "studies/honesty.h"
+#include "support/test.h"
 
 namespace exactff::experiments {
 namespace {
