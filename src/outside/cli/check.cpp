@@ -44,11 +44,8 @@ void add_all(TextTable& table, const std::string& source, const check::Statistic
 
 void print_distribution(const check::Report& report) {
   TextTable table;
-  table.add_column("error");
-  table.add_column("source");
-  for (const char* title : {"rows", "median", "90 %", "99 %", "99.9 %", "max", "RMS", "bias"}) {
-    table.add_column(title, Align::kRight);
-  }
+  table.add_columns({"error", "source"});
+  table.add_columns({"rows", "median", "90 %", "99 %", "99.9 %", "max", "RMS", "bias"}, Align::kRight);
   const bool several = report.sources.size() > 1;
   add_all(table, several ? "all" : report.sources.front(), report.overall);
   for (std::size_t s = 0; several && s < report.sources.size(); ++s) {
@@ -98,8 +95,8 @@ void print_worst(const check::Report& report) {
   TextTable table;
   table.add_column("#", Align::kRight);
   for (const std::string& title : report.keys) table.add_column(title);
-  for (const char* title : {report.worst.front().claim ? "truth" : "exact", "found", "error", "relative", "line"})
-    table.add_column(title, Align::kRight);
+  table.add_columns({report.worst.front().claim ? "truth" : "exact", "found", "error", "relative", "line"},
+                    Align::kRight);
   for (std::size_t i = 0; i < report.worst.size(); ++i) {
     const check::RowError& row = report.worst[i];
     table.add_row({std::to_string(i + 1), row.receiver, row.source, text::shortest(row.truth),
@@ -112,8 +109,8 @@ void print_worst(const check::Report& report) {
 
 void print_verdicts(const check::Report& report) {
   TextTable table;
-  for (const char* title : {"verdict", "criterion", "source"}) table.add_column(title);
-  for (const char* title : {"measured", "limit"}) table.add_column(title, Align::kRight);
+  table.add_columns({"verdict", "criterion", "source"});
+  table.add_columns({"measured", "limit"}, Align::kRight);
   for (const check::Verdict& verdict : report.verdicts) {
     table.add_row({verdict.passed ? "pass" : "FAIL", verdict.criterion, verdict.source.empty() ? "all" : verdict.source,
                    text::short_number(verdict.measured, 6), text::short_number(verdict.limit, 6)});
@@ -139,11 +136,10 @@ void print_end(const check::Report& report, bool improved, const std::string& ba
   if (failed > 0) {
     std::cout << "Failed: " << failed << " of " << text::counted(report.verdicts.size(), "criterion", "criteria")
               << '\n';
-  } else {
-    std::cout << "Passed\n";
+    return;
   }
-  const bool suggests = failed == 0 && improved && !baseline_to_tighten.empty();
-  if (suggests)
+  std::cout << "Passed\n";
+  if (improved && !baseline_to_tighten.empty())
     std::cout << "To record this improvement, without --baseline: --write-baseline "
               << text::printable(baseline_to_tighten) << '\n';
 }
@@ -171,10 +167,10 @@ constexpr const char* kCheckFooter =
     "An error that is equal to a limit passes.\n"
     "The relative error is infinite if the truth is 0 and the value is not. With --relative-floor, relative errors\n"
     "are divided by the truth or by the floor, whichever is larger. --eps-b limits the error in radiosity: in each\n"
-    "row, the absolute error times the largest rho B (reflectance of the receiver times radiosity of the source).\n"
-    "A baseline file records errors, which become the limits of later runs. An error counts as worse if it is larger\n"
-    "by more than --slack and by more than 4 units in the last place. A program that draws new random numbers in\n"
-    "every run needs a slack such as 0.2, or a fixed seed.\n"
+    "row, the absolute error times the largest rho B (reflectance of the receiver times radiosity of the source). A\n"
+    "baseline file records errors, which become the limits of later runs. An error counts as worse if it is larger by\n"
+    "more than --slack and by more than 4 units in the last place. A program that draws new random numbers in every\n"
+    "run needs a slack such as 0.2, or a fixed seed.\n"
     "With --baseline, --write-baseline writes its file, another one, only if nothing got worse.\n"
     "Tables may have commas, or semicolons as spreadsheets write them, then also with decimal commas.\n"
     "Two images, .exr or .npy arrays (height, width, 3), are compared pixel by pixel, in each channel: pixels are\n"
@@ -182,15 +178,12 @@ constexpr const char* kCheckFooter =
     "shows where the errors are.\n"
     "Any table that exactff wrote can be the truth, as CSV, .npz or .jsonl. Its\n"
     "key columns match rows. Values with bounds are judged by their distance from [lower, upper].\n"
-    "A file of `exactff matrix -o` is compared entry by entry with another program's matrix: a table with "
-    "from,to,value\n"
-    "or with names above and beside it, UserViewFactors of EnergyPlus, or, in the same order, View3D's output, "
-    "OpenFOAM's\n"
-    "F, CalculiX' .vwf, numbers only or .npy. Negative entries, entries above 1, sums of rows and reciprocity are "
-    "printed.\n"
-    "Several candidates are a scoreboard, printed as a table in Markdown; -o DIR writes a page, JSON and JUnit XML.\n"
-    "If TRUTH is the folder of a suite, such as data/suite, candidates have the columns question and value, and are\n"
-    "graded on each of its levels; questions may be left out.\n"
+    "A file of `exactff matrix -o` is compared entry by entry with another program's matrix: a table with\n"
+    "from,to,value or with names above and beside it, UserViewFactors of EnergyPlus, or, in the same order, View3D's\n"
+    "output, OpenFOAM's F, CalculiX' .vwf, numbers only or .npy. Negative entries, entries above 1, sums of rows and\n"
+    "reciprocity are printed. Several candidates are a scoreboard, printed as a table in Markdown; -o DIR writes a\n"
+    "page, JSON and JUnit XML. If TRUTH is the folder of a suite, such as data/suite, candidates have the columns\n"
+    "question and value, and are graded on each of its levels; questions may be left out.\n"
     "Exit codes: 0 passed, 1 failed, 2 bad input.\n"
     "\n"
     "Examples:\n"
@@ -421,101 +414,76 @@ int run(const CheckArguments& args) {
 }
 
 void add_matching(CLI::App& command, CheckArguments& args) {
-  command
-      .add_option("--value-column", args.columns.value,
-                  "The candidate's column to judge (default: value, approximate or exact; of a table of "
-                  "exactff that of the truth); of an image its layer or "
-                  "channel (default: R, G, B)")
-      ->type_name("NAME");
-  command
-      .add_option("--receiver-column", args.columns.receiver,
-                  "The candidate's column of receivers (default: receiver or id; from; patch)")
-      ->type_name("NAME");
-  command
-      .add_option(
-          "--source-column", args.columns.source,
-          "The candidate's column of sources (default: source; to; channel); needed only if the truth has several")
-      ->type_name("NAME");
-  command
-      .add_option(
-          "--truth-column", args.truth_column,
-          "The truth's column to compare with, such as unoccluded, radiosity_g, total_g or dF_dx (default: exact, "
-          "factor or radiosity); of an image its layer or channel")
-      ->type_name("NAME");
+  flags::add_value(command, "--value-column", args.columns.value, "NAME",
+                   "The candidate's column to judge (default: value, approximate or exact; of a table of "
+                   "exactff that of the truth); of an image its layer or "
+                   "channel (default: R, G, B)");
+  flags::add_value(command, "--receiver-column", args.columns.receiver, "NAME",
+                   "The candidate's column of receivers (default: receiver or id; from; patch)");
+  flags::add_value(
+      command, "--source-column", args.columns.source, "NAME",
+      "The candidate's column of sources (default: source; to; channel); needed only if the truth has several");
+  flags::add_value(
+      command, "--truth-column", args.truth_column, "NAME",
+      "The truth's column to compare with, such as unoccluded, radiosity_g, total_g or dF_dx (default: exact, "
+      "factor or radiosity); of an image its layer or channel");
   command.add_option("--match", args.match, "How rows are matched: by the receiver's id or by its position")
       ->check(CLI::IsMember({"receiver", "position"}))
       ->capture_default_str();
-  command.add_option("--tolerance", args.tolerance, "Matching by position: largest distance between matching points")
-      ->capture_default_str()
-      ->type_name("DISTANCE");
-  command
-      .add_option("--normal-tolerance", args.normal_tolerance,
-                  "Matching by position: largest distance between matching unit normals, if both files have normals")
-      ->capture_default_str()
-      ->type_name("DISTANCE");
-  command.add_option("--position-columns", args.position_columns, "The candidate's columns of coordinates")
-      ->capture_default_str()
-      ->type_name("X,Y,Z");
-  command.add_option("--normal-columns", args.normal_columns, "The candidate's columns of normals, if it has any")
-      ->capture_default_str()
-      ->type_name("NX,NY,NZ");
+  flags::add_value(command, "--tolerance", args.tolerance, "DISTANCE",
+                   "Matching by position: largest distance between matching points")
+      ->capture_default_str();
+  flags::add_value(command, "--normal-tolerance", args.normal_tolerance, "DISTANCE",
+                   "Matching by position: largest distance between matching unit normals, if both files have normals")
+      ->capture_default_str();
+  flags::add_value(command, "--position-columns", args.position_columns, "X,Y,Z",
+                   "The candidate's columns of coordinates")
+      ->capture_default_str();
+  flags::add_value(command, "--normal-columns", args.normal_columns, "NX,NY,NZ",
+                   "The candidate's columns of normals, if it has any")
+      ->capture_default_str();
   command.add_flag("--partial", args.partial, "Rows of the truth may be missing");
 }
 
 void add_criteria(CLI::App& command, CheckArguments& args) {
-  command.add_option("--max-abs", args.max_abs, "Limit for every absolute error")->type_name("LIMIT");
-  command.add_option("--max-rel", args.max_rel, "Limit for every relative error")->type_name("LIMIT");
-  command.add_option("--rms", args.rms, "Limit for the root mean square of the absolute errors")->type_name("LIMIT");
-  command.add_option("--eps-b", args.eps_b, "Limit for every error in radiosity")->type_name("LIMIT");
-  command.add_option("--relative-mse", args.relative_mse, "Of two images: limit for the relative mean square error")
-      ->type_name("LIMIT");
-  command
-      .add_option(
-          "--quantile", args.quantiles,
-          "This share of the rows must have absolute errors within the limit, such as 0.99=1e-3; can be repeated")
-      ->type_name("SHARE=LIMIT")
+  flags::add_value(command, "--max-abs", args.max_abs, "LIMIT", "Limit for every absolute error");
+  flags::add_value(command, "--max-rel", args.max_rel, "LIMIT", "Limit for every relative error");
+  flags::add_value(command, "--rms", args.rms, "LIMIT", "Limit for the root mean square of the absolute errors");
+  flags::add_value(command, "--eps-b", args.eps_b, "LIMIT", "Limit for every error in radiosity");
+  flags::add_value(command, "--relative-mse", args.relative_mse, "LIMIT",
+                   "Of two images: limit for the relative mean square error");
+  flags::add_value(
+      command, "--quantile", args.quantiles, "SHARE=LIMIT",
+      "This share of the rows must have absolute errors within the limit, such as 0.99=1e-3; can be repeated")
       ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->take_all();
   command.add_flag("--per-source", args.per_source, "Check every limit and the baseline for each source separately");
-  command.add_option("--relative-floor", args.relative_floor, "Divide by at least this number in relative errors")
-      ->capture_default_str()
-      ->type_name("NUMBER");
-  command.add_option("--baseline", args.baseline, "Fail if errors are worse than those recorded in this file")
-      ->type_name("FILE")
-      ->check(flags::is_read());
-  command.add_option("--write-baseline", args.write_baseline, "Record the errors of this run")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kJson));
-  command.add_option("--slack", args.slack, "Share by which errors may exceed the baseline: 0.1 allows 10 % more")
-      ->capture_default_str()
-      ->type_name("SHARE");
+  flags::add_value(command, "--relative-floor", args.relative_floor, "NUMBER",
+                   "Divide by at least this number in relative errors")
+      ->capture_default_str();
+  flags::add_read(command, "--baseline", args.baseline, "Fail if errors are worse than those recorded in this file");
+  flags::add_written(command, "--write-baseline", args.write_baseline, "Record the errors of this run",
+                     flags::Format::kJson);
+  flags::add_value(command, "--slack", args.slack, "SHARE",
+                   "Share by which errors may exceed the baseline: 0.1 allows 10 % more")
+      ->capture_default_str();
 }
 
 void add_outputs(CLI::App& command, CheckArguments& args) {
-  command
-      .add_option("--error-image", args.error_image,
-                  "Of two images: write candidate minus truth as .exr, or in colours as .png")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kImage));
-  command.add_option("--worst", args.worst, "Number of rows to list, worst first")
-      ->capture_default_str()
-      ->type_name("N");
-  command.add_option("--plot", args.plot, "Draw the histogram of the errors as SVG")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kSvg));
-  command.add_option("--junit", args.junit, "Write the verdicts as JUnit XML")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kXml));
-  command.add_option("--json", args.json, "Write everything as JSON")
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kJson));
-  command.add_option("-o,--output", args.folder, "Folder for a scoreboard: index.html, scoreboard.json, junit.xml")
-      ->type_name("DIR")
+  flags::add_written(command, "--error-image", args.error_image,
+                     "Of two images: write candidate minus truth as .exr, or in colours as .png",
+                     flags::Format::kImage);
+  flags::add_value(command, "--worst", args.worst, "N", "Number of rows to list, worst first")->capture_default_str();
+  flags::add_written(command, "--plot", args.plot, "Draw the histogram of the errors as SVG", flags::Format::kSvg);
+  flags::add_written(command, "--junit", args.junit, "Write the verdicts as JUnit XML", flags::Format::kXml);
+  flags::add_written(command, "--json", args.json, "Write everything as JSON", flags::Format::kJson);
+  flags::add_value(command, "-o,--output", args.folder, "DIR",
+                   "Folder for a scoreboard: index.html, scoreboard.json, junit.xml")
       ->check(flags::is_written_folder());
-  command.add_option("--time", args.times, "Scoreboard: the time of the program whose file is NAME.*; can be repeated")
-      ->type_name("NAME=SECONDS")
+  flags::add_value(command, "--time", args.times, "NAME=SECONDS",
+                   "Scoreboard: the time of the program whose file is NAME.*; can be repeated")
       ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->take_all();
   command.add_flag("--github", args.github, "Also print annotations for GitHub Actions");
 }
 
@@ -525,21 +493,15 @@ Command add_check(CLI::App& app) {
   auto args = std::make_shared<CheckArguments>();
   CLI::App* command =
       app.add_subcommand("check", "Compare the values of other programs with a truth file: pass or fail");
-  command
-      ->add_option(
-          "TRUTH", args->truth,
-          "Table written by exactff: of `truth`, `matrix -o`, `radiosity -o`, a report, ...; or an image, .exr or "
-          ".npy; or the folder of a suite")
+  flags::add_read(
+      *command, "TRUTH", args->truth,
+      "Table written by exactff: of `truth`, `matrix -o`, `radiosity -o`, a report, ...; or an image, .exr or "
+      ".npy; or the folder of a suite")
+      ->required();
+  flags::add_read(*command, "CANDIDATE", args->candidates,
+                  "CSV file of the values to judge; or an image, or a matrix; several are a scoreboard")
       ->required()
-      ->type_name("FILE")
-      ->check(flags::is_read());
-  command
-      ->add_option("CANDIDATE", args->candidates,
-                   "CSV file of the values to judge; or an image, or a matrix; several are a scoreboard")
-      ->required()
-      ->expected(1, -1)
-      ->type_name("FILE")
-      ->check(flags::is_read());
+      ->expected(1, -1);
   add_matching(*command, *args);
   add_criteria(*command, *args);
   add_outputs(*command, *args);

@@ -298,16 +298,6 @@ std::string between(const std::string& text, std::string_view open, char close) 
   return text.substr(from, text.find(close, from) - from);
 }
 
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find(separator, at), text.size());
-    parts.push_back(text.substr(at, end - at));
-    at = end + 1;
-  }
-  return parts;
-}
-
 // The kind of value that the option takes, as far as its type says. An unspecific type ("TEXT") may be a file.
 Completion completion_of(const TypeText& type) {
   for (const std::string& text : {type.check, type.type}) {
@@ -391,7 +381,7 @@ OptionRow option_row(const CLI::Option& option) {
   row.required = option.get_required();
   if (option.get_items_expected_max() == 0) return row;  // a flag
 
-  row.choices = split(between(type.check, "{", '}'), ',');
+  if (const std::string all = between(type.check, "{", '}'); !all.empty()) row.choices = flags::split_list(all);
   row.completion = completion_of(type);
   row.least_values = std::max(1, option.get_items_expected_min());
   row.most_values = std::min(option.get_items_expected_max(), kManyValues);
@@ -406,8 +396,7 @@ ProgramTable program_table(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
     if (!command->get_group().empty()) table.commands.push_back(command_table(*command));
   }
-  std::vector<std::string> names;
-  for (const CommandTable& command : table.commands) names.push_back(command.name);
+  const std::vector<std::string> names = command_names(table);
   for (CommandTable& command : table.commands) {
     for (OptionRow& row : command.positionals) {
       if (row.value != "COMMAND") continue;

@@ -15,6 +15,7 @@
 #include "files/file.h"
 #include "flags/scene.h"
 #include "flags/values.h"
+#include "scene/selections.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -23,26 +24,20 @@ namespace exactff::cli {
 namespace {
 
 constexpr const char* kConvertFooter =
-    "The extension of OUT says what is written: .obj (with .mtl), .ply, .stl, .off or .vs3 (View3D). Doubles are "
-    "kept,\n"
-    "except in binary STL. What the format does not hold (names, materials, colours, holes, polygons) is listed as\n"
-    "warnings before anything is written. Where faces are cut into smaller ones, at their own vertices, form factors "
-    "do\n"
-    "not change. A file appears complete or not at all.\n"
-    "--divide LENGTH cuts faces into cells, each a patch NAME:k of its own. All faces along an edge share its points, "
-    "so\n"
-    "closed surfaces stay closed. Corners are rounded to doubles; how far they are off at most is printed. Cells that "
-    "are\n"
-    "not exactly planar then are cut into triangles.\n"
+    "The extension of OUT says what is written: .obj (with .mtl), .ply, .stl, .off or .vs3 (View3D). Doubles are\n"
+    "kept, except in binary STL. What the format does not hold (names, materials, colours, holes, polygons) is listed\n"
+    "as warnings before anything is written. Where faces are cut into smaller ones, at their own vertices, form\n"
+    "factors do not change. A file appears complete or not at all.\n"
+    "--divide LENGTH cuts faces into cells, each a patch NAME:k of its own. All faces along an edge share its points,\n"
+    "so closed surfaces stay closed. Corners are rounded to doubles; how far they are off at most is printed. Cells\n"
+    "that are not exactly planar then are cut into triangles.\n"
     "--weld LENGTH makes one corner of those that are linked by distances of at most LENGTH, so that walls that miss\n"
-    "each other by roundings close. Each coordinate is the median of theirs. Edges almost along an axis become "
-    "parallel\n"
-    "to it, and open edges get the corners of others that they pass. What moved, vanished, closed or stays bent is\n"
-    "printed; faces that lie closer than LENGTH, face to face, are named and stay two. Welding twice changes nothing.\n"
-    "`exactff info` measures the length that closes a scene.\n"
-    "--triangulate cuts all faces into triangles. A face that is not exactly planar becomes the triangles that "
-    "exactff\n"
-    "takes it for.\n"
+    "each other by roundings close. Each coordinate is the median of theirs. Edges almost along an axis become\n"
+    "parallel to it, and open edges get the corners of others that they pass. What moved, vanished, closed or stays\n"
+    "bent is printed; faces that lie closer than LENGTH, face to face, are named and stay two. Welding twice changes\n"
+    "nothing. `exactff info` measures the length that closes a scene.\n"
+    "--triangulate cuts all faces into triangles. A face that is not exactly planar becomes the triangles that\n"
+    "exactff takes it for.\n"
     "A table that exactff wrote becomes .csv, .npz (a NumPy archive with an array for each\n"
     "column, and the head) or .jsonl (JSON lines, the first of which is the head).\n"
     "\n"
@@ -71,8 +66,8 @@ int convert_table(const ConvertArguments& args) {
   const std::filesystem::path out = args.out;
   require_table_file(out);
   if (args.triangulate || args.weld || args.scene.divide || !args.encoding.empty()) {
-    text::refuse(std::filesystem::path(args.scene.path), "is a table, and flags for scenes are given",
-                 "a table has no faces", "leave them out");
+    text::refuse(args.scene.path, "is a table, and flags for scenes are given", "a table has no faces",
+                 "leave them out");
   }
   files::require_not_read(out, std::vector<std::filesystem::path>{args.scene.path});
   table::write(table::read(args.scene.path), out);
@@ -104,22 +99,18 @@ void print_welding(const Scene& before, const WeldedScene& welded, double length
   const std::size_t open = welded.scene.open_edge_count();
   note("open edges: " + std::to_string(before.open_edge_count()) + " before, " + std::to_string(open) + " now" +
        (open == 0 ? "; the surface is closed" : ""));
-  std::vector<FaceId> bent;
-  for (std::size_t f = 0; f < welded.scene.faces().size(); ++f) {
-    if (welded.scene.faces()[f].shape == FaceShape::kTriangulated) bent.push_back(static_cast<FaceId>(f));
-  }
-  if (!bent.empty())
+  const auto is_bent = [](const Face& face) { return face.shape == FaceShape::kTriangulated; };
+  if (const std::vector<FaceId> bent = faces_where(welded.scene, is_bent); !bent.empty())
     note(text::counted(bent.size(), "face") + (bent.size() == 1 ? " is" : " are") +
          " not exactly planar, and counted as triangles: " + listed_faces(welded.scene, bent));
   std::vector<Problem> warnings;
   for (const WeldedScene::Sheets& sheets : welded.sheets) {
-    warnings.push_back(
-        {.what = text::in_quotes(welded.scene.name_of(sheets.one)) + " and " +
-                 text::in_quotes(welded.scene.name_of(sheets.other)) +
-                 (sheets.apart == 0.0 ? " now lie on each other"
-                                      : " lie face to face, " + text::short_number(sheets.apart) + " apart"),
-         .why = "faces that close to each other are not made one",
-         .suggestion = "remove one of them if only one is meant"});
+    const std::string how = sheets.apart == 0.0 ? " now lie on each other"
+                                                : " lie face to face, " + text::short_number(sheets.apart) + " apart";
+    warnings.push_back({.what = text::in_quotes(welded.scene.name_of(sheets.one)) + " and " +
+                                text::in_quotes(welded.scene.name_of(sheets.other)) + how,
+                        .why = "faces that close to each other are not made one",
+                        .suggestion = "remove one of them if only one is meant"});
   }
   print_warnings(warnings);
 }
@@ -163,10 +154,8 @@ Command add_convert(CLI::App& app) {
       ->add_option("OUT", args->out, "File to write: .obj, .ply, .stl, .off or .vs3; of a table: .csv, .npz or .jsonl")
       ->required()
       ->check(flags::is_written(flags::Format::kScene, flags::Beside::kMaterials));
-  command
-      ->add_option("--weld", args->weld,
+  flags::add_value(*command, "--weld", args->weld, "LENGTH",
                    "Make one corner of those within this distance of each other, before anything is divided")
-      ->type_name("LENGTH")
       ->check(flags::is_positive);
   command->add_flag("--triangulate", args->triangulate, "Cut all faces into triangles, at their own vertices");
   command->add_option("--encoding", args->encoding, "Form of PLY (otherwise binary) and STL (otherwise text)")

@@ -16,6 +16,7 @@
 #include "exactff/version.h"
 #include "flags/scene.h"
 #include "flags/values.h"
+#include "scene/selections.h"
 #include "text/escape.h"
 #include "text/json_document.h"
 #include "text/phrases.h"
@@ -33,16 +34,8 @@ std::string short_colour(const Rgb& c) {
   return fmt::format("{} {} {}", six_digits(c.r), six_digits(c.g), six_digits(c.b));
 }
 
-std::string counted(std::size_t count, const std::string& one, const std::string& many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-
 std::vector<FaceId> faces_of_shape(const Scene& scene, FaceShape shape) {
-  std::vector<FaceId> result;
-  for (std::size_t i = 0; i < scene.faces().size(); ++i) {
-    if (scene.faces()[i].shape == shape) result.push_back(static_cast<FaceId>(i));
-  }
-  return result;
+  return faces_where(scene, [&](const Face& face) { return face.shape == shape; });
 }
 
 // --- for people ---
@@ -104,10 +97,10 @@ void print_patches(const Scene& scene, const std::vector<PatchSummary>& rows) {
 }
 
 void print_totals(const Scene& scene, const std::vector<PatchSummary>& rows) {
-  std::cout << counted(scene.patches().size(), "patch", "patches") << ", "
-            << counted(scene.faces().size(), "face", "faces") << " in "
-            << counted(scene.pieces().size(), "convex piece", "convex pieces") << ", "
-            << counted(scene.vertices().size(), "vertex", "vertices") << ", " << area_words(scene) << ' '
+  std::cout << text::counted(scene.patches().size(), "patch", "patches") << ", "
+            << text::counted(scene.faces().size(), "face") << " in "
+            << text::counted(scene.pieces().size(), "convex piece") << ", "
+            << text::counted(scene.vertices().size(), "vertex", "vertices") << ", " << area_words(scene) << ' '
             << six_digits(total_area(rows)) << '\n';
 }
 
@@ -120,12 +113,6 @@ void print_list(const std::string& title, const std::vector<std::string>& items)
   if (items.empty()) std::cout << "none";
   if (items.size() > kShown) std::cout << " and " << items.size() - kShown << " more";
   std::cout << '\n';
-}
-
-std::vector<std::string> emitter_names(const Scene& scene) {
-  std::vector<std::string> names;
-  for (const Selection& emitter : scene.emitters()) names.push_back(scene.name_of(emitter));
-  return names;
 }
 
 // NAME:k even if the patch has only one face: these lists are about faces.
@@ -149,7 +136,7 @@ void print_faces(const Scene& scene) {
   for (const FaceId face : faces_of_shape(scene, FaceShape::kTriangulated)) {
     other.push_back(fmt::format("{} (off by {}, {})", numbered_name(scene, face),
                                 six_digits(scene.face(face).out_of_plane),
-                                counted(scene.face(face).piece_count, "triangle", "triangles")));
+                                text::counted(scene.face(face).piece_count, "triangle")));
   }
   print_list("not exactly planar, cut into triangles (distance from the plane / diameter)", other);
   print_list("zero area, ignored", numbered_names(scene, FaceShape::kZeroArea));
@@ -160,7 +147,7 @@ void print_faces(const Scene& scene) {
   for (int set = 0; set < kTextureSets; ++set) {
     if (const std::size_t count = textured_faces(scene, set); count > 0) {
       std::cout << "texture coordinates " << set << ": " << count << " of "
-                << counted(scene.faces().size(), "face", "faces") << '\n';
+                << text::counted(scene.faces().size(), "face") << '\n';
     }
   }
 }
@@ -174,7 +161,7 @@ void print_gap(const Scene& scene, const flags::SceneArguments& arguments) {
             << found->open_edges_before << " open edges";
   if (const std::size_t bent = faces_of_shape(scene, FaceShape::kTriangulated).size(); bent > 0) {
     std::cout << ", and " << faces_of_shape(welded(scene, found->length).scene, FaceShape::kTriangulated).size()
-              << " of " << counted(bent, "bent face", "bent faces");
+              << " of " << text::counted(bent, "bent face");
   }
   std::cout << '\n';
 }
@@ -217,7 +204,7 @@ void print_text(const Scene& scene, const flags::SceneArguments& arguments) {
     std::cout << '\n';
   }
   print_totals(scene, rows);
-  print_list("emitters", emitter_names(scene));
+  print_list("emitters", names_of(scene, scene.emitters()));
   print_faces(scene);
   print_gap(scene, arguments);
   print_contacts(scene);
@@ -262,12 +249,10 @@ ordered_json faces_to_json(const Scene& scene) {
 }
 
 ordered_json to_json(const slips::Finding& finding, const Scene& scene) {
-  ordered_json json = {{"kind", to_string(finding.kind)},
-                       {"message", finding.words.message()},
-                       {"objects", ordered_json::array()},
-                       {"flag", finding.flag}};
-  for (const Selection& object : finding.objects) json["objects"].push_back(scene.name_of(object));
-  return json;
+  return {{"kind", to_string(finding.kind)},
+          {"message", finding.words.message()},
+          {"objects", names_of(scene, finding.objects)},
+          {"flag", finding.flag}};
 }
 
 void print_json(const Scene& scene, const flags::SceneArguments& arguments) {
@@ -290,7 +275,7 @@ void print_json(const Scene& scene, const flags::SceneArguments& arguments) {
   }
   json["patches"] = ordered_json::array();
   for (const PatchSummary& row : rows) json["patches"].push_back(to_json(row, scene));
-  json["emitters"] = emitter_names(scene);
+  json["emitters"] = names_of(scene, scene.emitters());
   json["not_planar"] = faces_to_json(scene);
   json["ignored"] = numbered_names(scene, FaceShape::kZeroArea);
   json["left_out"] = numbered_names(scene, FaceShape::kSkipped);

@@ -2,7 +2,6 @@
 #include "exactff/matrix.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -70,7 +69,7 @@ constexpr std::size_t kMostShown = 12;  // rows and columns of the printed table
 
 std::string flag_of(const matrix::ProgramFormat& format) { return "--" + std::string(format.name); }
 
-struct MatrixArguments {
+struct MatrixArguments : KeptRun {
   flags::SceneArguments scene;
   std::vector<std::string> from{"all"}, to{"all"}, two_sided, sums;
   matrix::Options options;
@@ -80,10 +79,7 @@ struct MatrixArguments {
   std::vector<std::string> programs = std::vector<std::string>(matrix::program_formats().size());  // files, or empty
   std::string zone = "Zone 1";
   std::string shard;
-  bool resume = false;
-  bool force = false;
 
-  [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
   // Whether every row must have all that it sees.
   [[nodiscard]] bool needs_all() const { return balance || exchanges(); }
   [[nodiscard]] bool exchanges() const {
@@ -106,25 +102,31 @@ struct MatrixArguments {
   }
 };
 
-template <class Visit>
-void for_each_entry(const Scene& scene, const matrix::Matrix& matrix, const Visit& visit) {
-  const matrix::Factors& all = matrix.factors;
-  for (std::size_t i = 0; i < all.from.size(); ++i) {
-    for (std::size_t j = 0; j < all.to.size(); ++j) visit(i, shown_name(scene, all.to[j]), all.at(i, j));
-    if (!matrix.back.empty()) visit(i, std::string(matrix::kBack), matrix.back[i]);
-    if (!matrix.open.empty()) visit(i, std::string(matrix::kOpen), matrix.open[i]);
-    if (!matrix.buried.empty()) visit(i, std::string(matrix::kBuried), matrix.buried[i]);
-    for (const matrix::GroupSum& sum : matrix.sums) visit(i, text::printable(name_of(sum)), sum.factors[i]);
+// The columns that are no patch: their names, and a factor for each row.
+std::vector<std::pair<std::string, const std::vector<ViewFactor>*>> further_columns(const matrix::Matrix& matrix) {
+  std::vector<std::pair<std::string, const std::vector<ViewFactor>*>> columns;
+  const std::pair<std::string_view, const std::vector<ViewFactor>*> shares[] = {
+      {matrix::kBack, &matrix.back}, {matrix::kOpen, &matrix.open}, {matrix::kBuried, &matrix.buried}};
+  for (const auto& [name, factors] : shares) {
+    if (!factors->empty()) columns.emplace_back(name, factors);
   }
+  for (const matrix::GroupSum& sum : matrix.sums) columns.emplace_back(text::printable(name_of(sum)), &sum.factors);
+  return columns;
 }
 
 void print_plain(const Scene& scene, const matrix::Matrix& matrix, bool with_values) {
-  for_each_entry(scene, matrix, [&](std::size_t i, const std::string& to, const ViewFactor& f) {
-    std::cout << shown_name(scene, matrix.factors.from[i]) << '\t' << to << '\t' << text::shortest(f.lower) << '\t'
+  const matrix::Factors& all = matrix.factors;
+  const auto further = further_columns(matrix);
+  const auto print = [&](std::size_t i, const std::string& to, const ViewFactor& f) {
+    std::cout << shown_name(scene, all.from[i]) << '\t' << to << '\t' << text::shortest(f.lower) << '\t'
               << text::shortest(f.upper) << '\t' << to_string(f.claim) << '\t' << to_string(f.way);
     if (with_values) std::cout << '\t' << text::shortest(f.value);
     std::cout << '\n';
-  });
+  };
+  for (std::size_t i = 0; i < all.from.size(); ++i) {
+    for (std::size_t j = 0; j < all.to.size(); ++j) print(i, shown_name(scene, all.to[j]), all.at(i, j));
+    for (const auto& [name, factors] : further) print(i, name, (*factors)[i]);
+  }
 }
 
 std::string factor_text(const ViewFactor& f) {
@@ -139,18 +141,13 @@ void print_table(const Scene& scene, const matrix::Matrix& matrix) {
   TextTable table;
   table.add_column("from \\ to");
   for (std::size_t j = 0; j < columns; ++j) table.add_column(shown_name(scene, all.to[j]));
-  if (!matrix.back.empty()) table.add_column(std::string(matrix::kBack));
-  if (!matrix.open.empty()) table.add_column(std::string(matrix::kOpen));
-  if (!matrix.buried.empty()) table.add_column(std::string(matrix::kBuried));
-  for (const matrix::GroupSum& sum : matrix.sums) table.add_column(text::printable(name_of(sum)));
+  const auto further = further_columns(matrix);
+  for (const auto& [name, factors] : further) table.add_column(name);
   table.add_column("sum of row");
   for (std::size_t i = 0; i < rows; ++i) {
     std::vector<std::string> cells{shown_name(scene, all.from[i])};
     for (std::size_t j = 0; j < columns; ++j) cells.push_back(factor_text(all.at(i, j)));
-    if (!matrix.back.empty()) cells.push_back(factor_text(matrix.back[i]));
-    if (!matrix.open.empty()) cells.push_back(factor_text(matrix.open[i]));
-    if (!matrix.buried.empty()) cells.push_back(factor_text(matrix.buried[i]));
-    for (const matrix::GroupSum& sum : matrix.sums) cells.push_back(factor_text(sum.factors[i]));
+    for (const auto& [name, factors] : further) cells.push_back(factor_text((*factors)[i]));
     cells.push_back(text::interval(sums[i].lower, sums[i].upper));
     table.add_row(std::move(cells));
   }
@@ -159,10 +156,6 @@ void print_table(const Scene& scene, const matrix::Matrix& matrix) {
     std::cout << "\n(the first " << rows << " of " << all.from.size() << " rows and " << columns << " of "
               << all.to.size() << " columns; --plain and -o have all)\n";
   }
-}
-
-void warn(const std::string& what, const std::string& why, const std::string& suggestion) {
-  print_warnings(std::vector<Problem>{{.what = what, .why = why, .suggestion = suggestion}});
 }
 
 // Whether all rows hold 1. Those that need not are not tested.
@@ -177,11 +170,11 @@ bool test_rows(const MatrixArguments& args, const Scene& scene, const matrix::Ma
   for (std::size_t i = 0; i < sums.size(); ++i) {
     if (sums[i].lower <= 1.0 && 1.0 <= sums[i].upper) continue;
     all = false;
-    warn("the row of " + scene.name_of(matrix.factors.from[i]) + " adds up to between " +
-             text::shortest(sums[i].lower) + " and " + text::shortest(sums[i].upper),
-         has_estimates(matrix, i) ? "an estimated entry of it misses its interval, or a bound does not hold"
-                                  : "with back and open it must add up to 1, so a bound of it does not hold",
-         "please report the scene");
+    print_warning("the row of " + scene.name_of(matrix.factors.from[i]) + " adds up to between " +
+                      text::shortest(sums[i].lower) + " and " + text::shortest(sums[i].upper),
+                  has_estimates(matrix, i) ? "an estimated entry of it misses its interval, or a bound does not hold"
+                                           : "with back and open it must add up to 1, so a bound of it does not hold",
+                  "please report the scene");
   }
   if (all && !args.plain) std::cout << "\nEvery row adds up to 1 within its bounds.\n";
   return all;
@@ -205,9 +198,10 @@ bool test_reciprocity(const MatrixArguments& args, const Scene& scene, const mat
     std::cout << ".\n";
   }
   for (const matrix::Reciprocity::Pair& pair : found.apart) {
-    warn("the two directions between " + pair_name(pair) + " contradict each other",
-         "A_i F_ij and A_j F_ji are equal, but their bounds have no number in common, so a bound does not hold",
-         "please report the scene");
+    print_warning(
+        "the two directions between " + pair_name(pair) + " contradict each other",
+        "A_i F_ij and A_j F_ji are equal, but their bounds have no number in common, so a bound does not hold",
+        "please report the scene");
   }
   return found.apart.empty();
 }
@@ -303,7 +297,7 @@ void check_overlaps(const MatrixArguments& args, const Scene& scene, const std::
     overlaps->suggestion += "; --force writes it all the same";
     throw InputError(std::move(*overlaps));
   }
-  print_warnings(std::vector<Problem>{std::move(*overlaps)});
+  print_warnings(std::span(&*overlaps, 1));
 }
 
 // Before anything that takes time, what the files cannot hold is refused.
@@ -411,7 +405,7 @@ bool write_exchange(const MatrixArguments& args, const MatrixJob& job, const mat
   }
   for (const radiosity::Exchange::Channel& channel : found.channels) {
     if (channel.is_bounded()) continue;
-    warn("some exchange factors have no bound", channel.no_bound, channel.remedy);
+    print_warning("some exchange factors have no bound", channel.no_bound, channel.remedy);
     return false;
   }
   return true;
@@ -515,17 +509,12 @@ void add_outputs(CLI::App& command, MatrixArguments& args) {
     flags::add_written(command, flag_of(one), args.programs[k], std::string(one.help), format,
                        one.name == "openfoam" ? flags::Beside::kOpenFoam : flags::Beside::kNothing);
   }
-  command.add_option("--zone", args.zone, "Name of EnergyPlus' zone")
-      ->type_name("TEXT")
+  flags::add_value(command, "--zone", args.zone, "TEXT", "Name of EnergyPlus' zone")
       ->needs("--energyplus")
       ->capture_default_str();
-  command.add_option("--shard", args.shard, "Compute only part I of N, for exactff merge: 1/4 is the first of four")
-      ->type_name("I/N");
-  CLI::Option* resume = command.add_flag("--resume", args.resume, "Continue an interrupted run, if there is one");
-  command
-      .add_flag("--force", args.force,
-                "Start again and replace existing files; write those for other programs even if fronts overlap")
-      ->excludes(resume);
+  flags::add_value(command, "--shard", args.shard, "I/N",
+                   "Compute only part I of N, for exactff merge: 1/4 is the first of four");
+  args.add_to(command, "Start again and replace existing files; write those for other programs even if fronts overlap");
 }
 
 }  // namespace
@@ -536,16 +525,13 @@ Command add_matrix(CLI::App& app) {
   command->footer(kMatrixFooter);
   args->scene.add_to(*command);
   args->scene.add_divide_to(*command);
-  command
-      ->add_option("--from", args->from,
+  flags::add_value(*command, "--from", args->from, "NAME",
                    "Rows: names of patches or faces, separated by commas, or all; * ? [...] as in file names")
-      ->type_name("NAME")
       ->capture_default_str();
-  command->add_option("--to", args->to, "Columns, in the same way; sky is what is open")
-      ->type_name("NAME")
+  flags::add_value(*command, "--to", args->to, "NAME", "Columns, in the same way; sky is what is open")
       ->capture_default_str();
   command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces");
-  command->add_option("--two-sided", args->two_sided, kTwoSidedHelp)->type_name("NAME");
+  flags::add_value(*command, "--two-sided", args->two_sided, "NAME", kTwoSidedHelp);
   CLI::Option* both = command->add_flag("--both-directions", args->options.factors.both_directions,
                                         "Compute F_ij and F_ji apart, and compare A_i F_ij with A_j F_ji");
   CLI::Option* accuracy =
@@ -562,9 +548,8 @@ Command add_matrix(CLI::App& app) {
       ->excludes(claims.claim)
       ->excludes(claims.certify)
       ->excludes(both);
-  CLI::Option* sum =
-      command->add_option("--sum", args->sums, "Also the column (sum NAME): all columns of a divided patch or pattern")
-          ->type_name("NAME");
+  CLI::Option* sum = flags::add_value(*command, "--sum", args->sums, "NAME",
+                                      "Also the column (sum NAME): all columns of a divided patch or pattern");
   command
       ->add_flag("--balance", args->balance,
                  "Choose values within all intervals so that A_i F_ij = A_j F_ji and every row adds up to 1; computes "

@@ -43,10 +43,8 @@ std::string pad(const std::string& text, std::size_t width) {
 namespace {
 
 [[noreturn]] void cannot_write(const fs::path& path, const std::string& reason) {
-  throw InputError({.file = path.string(),
-                    .what = "cannot be written: " + reason,
-                    .why = "nothing was written",
-                    .suggestion = "name a file in a folder that exists, is writable and has free space"});
+  text::refuse(path, "cannot be written: " + reason, "nothing was written",
+               "name a file in a folder that exists, is writable and has free space");
 }
 
 // A pipe or device cannot be replaced by a file, so it is written directly.
@@ -63,16 +61,14 @@ void write_through(const fs::path& path, const std::string& text) {
 void require_free_file(const fs::path& path, bool force) {
   std::error_code ignored;
   if (force || !fs::is_regular_file(path, ignored)) return;
-  throw InputError({path.string(), 0, "already exists", "it may hold something else",
-                    "name another file, or replace it with --force"});
+  text::refuse(path, "already exists", "it may hold something else", "name another file, or replace it with --force");
 }
 
 void require_table_file(const fs::path& path) {
   const std::string extension = path.extension().string();
   std::error_code ignored;
   if (extension == ".csv" || extension == ".npz" || extension == ".jsonl" || fs::is_other(path, ignored)) return;
-  throw InputError({path.string(), 0, "cannot hold a table", "the extension says how it is written",
-                    "name a file .csv, .npz or .jsonl"});
+  text::refuse(path, "cannot hold a table", "the extension says how it is written", "name a file .csv, .npz or .jsonl");
 }
 
 namespace {
@@ -115,9 +111,8 @@ void check_output_folder(const fs::path& folder) {
 void check_output(std::ostream& out) {
   out.flush();
   if (out) return;
-  throw InputError({.what = "the result could not be written to standard output",
-                    .why = "the printed output is incomplete",
-                    .suggestion = "free some disk space, or send the output elsewhere"});
+  text::refuse("the result could not be written to standard output", "the printed output is incomplete",
+               "free some disk space, or send the output elsewhere");
 }
 
 namespace {
@@ -151,6 +146,11 @@ void print_warnings(std::span<const Problem> warnings) {
   if (warnings.size() > kPrinted) {
     std::cerr << "warning: ... and " << (at_least ? "more than " : "") << warnings.size() - kPrinted << " more\n";
   }
+}
+
+void print_warning(std::string what, std::string why, std::string suggestion) {
+  const Problem warning{.what = std::move(what), .why = std::move(why), .suggestion = std::move(suggestion)};
+  print_warnings(std::span(&warning, 1));
 }
 
 void TextTable::add_column(std::string title, Align align) {
@@ -194,8 +194,6 @@ void TextTable::print(std::ostream& out) const {
 }
 
 // --- Further files ---
-
-namespace fs = std::filesystem;
 
 namespace {
 

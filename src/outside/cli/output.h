@@ -46,6 +46,7 @@ void check_output(std::ostream& out);
 
 // Writes "warning: ..." to stderr for the first 20 warnings, then the number of the others.
 void print_warnings(std::span<const Problem> warnings);
+void print_warning(std::string what, std::string why, std::string suggestion);
 // Warnings on receivers that were probably meant to lie on a face.
 void print_near_misses(const Scene& scene, std::span<const Receiver> receivers);
 // Warnings on faces that lie behind others, which hide everything from them. Of more than 4,096 faces, about that many

@@ -33,10 +33,10 @@ std::vector<FaceId> own_faces(const std::string& on, const Scene& scene, const R
   const double tolerance = automatic->tolerance.value_or(face_tolerance(scene, receiver.point));
   std::vector<FaceId> faces = find_faces(scene, receiver, tolerance).faces;
   if (!faces.empty()) return faces;
-  throw InputError({.what = "--on " + on + ": no face lies within " + text::short_number(tolerance, 2) +
-                            " of x with a normal within a degree of --normal",
-                    .why = "the receiver would lie on no face",
-                    .suggestion = "check --at and --normal, or look further away with --on auto:DISTANCE"});
+  text::refuse("--on " + on + ": no face lies within " + text::short_number(tolerance, 2) +
+                   " of x with a normal within a degree of --normal",
+               "the receiver would lie on no face",
+               "check --at and --normal, or look further away with --on auto:DISTANCE");
 }
 
 void warn_of_own_face(const Scene& scene, const Receiver& receiver) {
@@ -82,10 +82,9 @@ void OneReceiver::add_to(CLI::App& app) {
          "Instead of --normal: the receiver is a small sphere, which sees all directions. The form factor is then "
          "the solid angle over 4 pi")
       ->excludes(direction);
-  app.add_option("--on", on,
-                 "The receiver lies on this face, or on several (floor:1+2); faces exactly in their planes then "
-                 "neither occlude nor illuminate it; auto or auto:DISTANCE finds them")
-      ->type_name("NAME[:K]");
+  flags::add_value(app, "--on", on, "NAME[:K]",
+                   "The receiver lies on this face, or on several (floor:1+2); faces exactly in their planes then "
+                   "neither occlude nor illuminate it; auto or auto:DISTANCE finds them");
 }
 
 Receiver OneReceiver::make(const Scene& scene) const {
@@ -155,16 +154,13 @@ std::vector<Selection> make_sources(const PointArguments& args, const Scene& sce
   std::vector<Selection> sources = flags::sources_of({args.sources}, scene);
   if (sources.empty()) sources = scene.emitters();
   if (sources.empty()) {
-    throw InputError({.file = args.scene.path,
-                      .what = "no patch of the scene emits (Ke is 0 everywhere)",
-                      .why = "without --source, every emitting patch is a source",
-                      .suggestion = "name a source with --source NAME; `exactff info` lists the names"});
+    text::refuse(args.scene.path, "no patch of the scene emits (Ke is 0 everywhere)",
+                 "without --source, every emitting patch is a source",
+                 "name a source with --source NAME; `exactff info` lists the names");
   }
   if (args.plain && sources.size() != 1) {
-    throw InputError({.file = {},
-                      .what = fmt::format("--plain prints one value, but there are {} sources", sources.size()),
-                      .why = {},
-                      .suggestion = "name one with --source NAME, or use --json"});
+    text::refuse(fmt::format("--plain prints one value, but there are {} sources", sources.size()), {},
+                 "name one with --source NAME, or use --json");
   }
   return sources;
 }
@@ -283,10 +279,8 @@ void add_up(PointResult& result) {
 
 void require_one(const std::vector<Selection>& sources, const std::string& picture) {
   if (sources.size() == 1) return;
-  throw InputError({.file = picture,
-                    .what = "--svg draws one source, but there are " + std::to_string(sources.size()),
-                    .why = {},
-                    .suggestion = "name one with --source NAME"});
+  text::refuse(picture, "--svg draws one source, but there are " + std::to_string(sources.size()), {},
+               "name one with --source NAME");
 }
 
 PointResult compute_point(const PointArguments& args, const Scene& scene) {
@@ -489,11 +483,10 @@ std::string is_a_number(const std::string& text) {
 
 void add_receiver_flags(CLI::App& app, PointArguments& args) {
   args.receiver.add_to(app);
-  app.add_option("--source", args.sources,
-                 std::string("Source patch or face") + flags::kNamesHelp +
-                     "; all: a table of every patch, with the sum and what is missing to 1 (default: every emitting "
-                     "patch, and their sum)")
-      ->type_name("NAME[:K]");
+  flags::add_value(app, "--source", args.sources, "NAME[:K]",
+                   std::string("Source patch or face") + flags::kNamesHelp +
+                       "; all: a table of every patch, with the sum and what is missing to 1 (default: every emitting "
+                       "patch, and their sum)");
   app.add_option(
          "--reflectance", args.reflectance,
          "Reflectance rho of the receiver, one or three values (default: Kd of the face of --on, or 1 without --on)")
@@ -550,18 +543,16 @@ void add_adaptive_flags(CLI::App& app, PointArguments& args) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 20));
   app.add_option("--seed", options.seed, "Its random seed")->capture_default_str();
-  app.add_option("--pattern", args.pattern,
-                 "Where in a leaf its rays end: jittered, centre, regular or low-discrepancy")
-      ->type_name("NAME")
+  flags::add_value(app, "--pattern", args.pattern, "NAME",
+                   "Where in a leaf its rays end: jittered, centre, regular or low-discrepancy")
       ->capture_default_str()
       ->check([](const std::string& name) {
         return pattern_named(name)
                    ? ""
                    : "there is no pattern " + name + "; choose jittered, centre, regular or low-discrepancy";
       });
-  app.add_option("--variant", args.variant,
-                 "literal: the algorithm as printed in 1992; mended: with its faults corrected")
-      ->type_name("NAME")
+  flags::add_value(app, "--variant", args.variant, "NAME",
+                   "literal: the algorithm as printed in 1992; mended: with its faults corrected")
       ->capture_default_str()
       ->check([](const std::string& name) {
         return variant_named(name) ? "" : "there is no variant " + name + "; choose mended or literal";

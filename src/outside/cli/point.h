@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -116,6 +117,12 @@ struct PointResult {
 [[nodiscard]] std::string value_text(const FormFactor& result, int digits);
 // To the precision of --digits, else the nearest double; "between" its bounds if the ball does not determine it.
 [[nodiscard]] std::string sum_words(const Enclosure& sum, int digits);
+// JSON of a vector, a ball, and of what is asked for: the scene, the receiver without its faces, and the measure.
+[[nodiscard]] nlohmann::ordered_json numbers_json(const Vec3& v);
+[[nodiscard]] nlohmann::ordered_json numbers_json(const Rgb& c);
+[[nodiscard]] nlohmann::ordered_json ball_json(const Enclosure& enclosure);
+[[nodiscard]] nlohmann::ordered_json question_json(const std::string& path, const Scene& scene,
+                                                   const Receiver& receiver, const Measure& measure);
 void print_point_table(const PointArguments& args, const Scene& scene, const PointResult& point);
 void print_point_json(const PointArguments& args, const Scene& scene, const PointResult& point);
 void draw_point(const PointArguments& args, const Scene& scene, const PointResult& point);

@@ -16,6 +16,28 @@ namespace exactff::cli {
 
 using text::shortest;
 
+nlohmann::ordered_json numbers_json(const Vec3& v) { return nlohmann::ordered_json::array({v.x, v.y, v.z}); }
+nlohmann::ordered_json numbers_json(const Rgb& c) { return nlohmann::ordered_json::array({c.r, c.g, c.b}); }
+
+nlohmann::ordered_json ball_json(const Enclosure& enclosure) {
+  return {{"midpoint", enclosure.midpoint()}, {"radius", enclosure.radius()}};
+}
+
+nlohmann::ordered_json question_json(const std::string& path, const Scene& scene, const Receiver& receiver,
+                                     const Measure& measure) {
+  const bool sphere = receiver.normal == Vec3{};
+  nlohmann::ordered_json json = {{"program", "exactff"},
+                                 {"version", kVersion},
+                                 {"scene", path},
+                                 {"scene_hash", scene.hash()},
+                                 {"receiver",
+                                  {{"point", numbers_json(receiver.point)},
+                                   {"normal", sphere ? nlohmann::ordered_json() : numbers_json(receiver.normal)}}}};
+  if (!measure.is_form_factor()) json["measure"] = to_string(measure.kind);
+  if (measure.kind == MeasureKind::kOvercast) json["up"] = numbers_json(measure.up);
+  return json;
+}
+
 namespace {
 
 std::string plain_derivative(const Derivative& d) {
@@ -258,13 +280,6 @@ void print_patch_table(const PointArguments& args, const Scene& scene, const Poi
 
 // --- JSON ---
 
-nlohmann::ordered_json numbers_json(const Vec3& v) { return nlohmann::ordered_json::array({v.x, v.y, v.z}); }
-nlohmann::ordered_json numbers_json(const Rgb& c) { return nlohmann::ordered_json::array({c.r, c.g, c.b}); }
-
-nlohmann::ordered_json ball_json(const Enclosure& enclosure) {
-  return {{"midpoint", enclosure.midpoint()}, {"radius", enclosure.radius()}};
-}
-
 nlohmann::ordered_json sum_json(const Enclosure& sum) {
   return {{"lower", sum.lower()}, {"upper", sum.upper()}, {"ball", ball_json(sum)}};
 }
@@ -431,33 +446,19 @@ void print_point_table(const PointArguments& args, const Scene& scene, const Poi
 }
 
 void print_point_json(const PointArguments& args, const Scene& scene, const PointResult& point) {
-  nlohmann::ordered_json json = {{"program", "exactff"},
-                                 {"version", kVersion},
-                                 {"scene", args.scene.path},
-                                 {"scene_hash", scene.hash()},
-                                 {"receiver",
-                                  {{"point", numbers_json(point.receiver.point)},
-                                   {"normal", numbers_json(point.receiver.normal)},
-                                   {"reflectance", numbers_json(point.reflectance)}}}};
-  if (!point.receiver.on.empty()) json["receiver"]["on"] = scene.name_of(point.receiver.on);
-  if (const std::optional<FaceId> cover = buried_under(scene, point.receiver)) {
-    json["receiver"]["buried_under"] = scene.name_of(*cover);
-  }
-  if (point.receiver.normal == Vec3{}) json["receiver"]["normal"] = nullptr;  // a sphere
-  if (!point.measure.is_form_factor()) {
-    json["measure"] = to_string(point.measure.kind);
-    if (point.measure.kind == MeasureKind::kOvercast) json["up"] = numbers_json(point.measure.up);
-  }
+  nlohmann::ordered_json json = question_json(args.scene.path, scene, point.receiver, point.measure);
+  nlohmann::ordered_json& receiver = json["receiver"];
+  receiver["reflectance"] = numbers_json(point.reflectance);
+  if (!point.receiver.on.empty()) receiver["on"] = scene.name_of(point.receiver.on);
+  if (const auto cover = buried_under(scene, point.receiver)) receiver["buried_under"] = scene.name_of(*cover);
   json["sources"] = nlohmann::ordered_json::array();
   for (const PointTerm& one : point.sources) json["sources"].push_back(source_json(args, scene, point, one));
   json["sum"] = sum_json(point.sum);
-  if (!point.measure.is_form_factor()) {
-    std::cout << text::json_document(json) << '\n';
-    return;
+  if (point.measure.is_form_factor()) {
+    if (point.is_mixed()) json["sum_of_emitters"] = sum_json(point.sum_of_emitters);
+    if (point.every_patch) json["missing_to_1"] = sum_json(missing_to_one(point.sum));
+    json["radiosity"] = numbers_json(point.radiosity);
   }
-  if (point.is_mixed()) json["sum_of_emitters"] = sum_json(point.sum_of_emitters);
-  if (point.every_patch) json["missing_to_1"] = sum_json(missing_to_one(point.sum));
-  json["radiosity"] = numbers_json(point.radiosity);
   std::cout << text::json_document(json) << '\n';
 }
 

@@ -77,11 +77,10 @@ bool launched_with_others() {
 }
 
 [[noreturn]] void refuse(std::string why_not) {
-  throw InputError(
-      {.what = "several processes were started together, but MPI is not available: " + std::move(why_not),
-       .why = "each process would do all the work",
-       .suggestion =
-           "start only one process, use --shard, or build exactff with libboost-mpi-dev and libopenmpi-dev installed"});
+  text::refuse(
+      "several processes were started together, but MPI is not available: " + std::move(why_not),
+      "each process would do all the work",
+      "start only one process, use --shard, or build exactff with libboost-mpi-dev and libopenmpi-dev installed");
 }
 
 // The module is beside the program in the build folder, or where it is installed.
@@ -240,15 +239,14 @@ void leave_if_interrupted() {
   if (is_interrupted()) throw Cancelled();
 }
 
-int unless_interrupted(const std::function<int()>& command) {
-  const std::string said = "exactff: interrupted\n";
-  const InterruptWatch watch(said);
+int unless_interrupted(const std::function<int()>& command, const std::string& words) {
+  const InterruptWatch watch(words);
   const Hooks hooks{{}, is_interrupted};
   const HooksOfThread stopped(hooks);
   try {
     return command();
   } catch (const Cancelled&) {
-    std::cerr << said;
+    std::cerr << words;
     return 128 + interrupting_signal();
   }
 }

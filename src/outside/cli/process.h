@@ -1,6 +1,7 @@
 // The program as a process: its exit code, Ctrl-C and a progress bar, and other processes that it was started with.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <array>
 #include <chrono>
 #include <csignal>
@@ -83,8 +84,9 @@ class InterruptWatch {
 void leave_if_interrupted();              // throws Cancelled
 
 // Runs a command under a watch. After a signal its computations throw Cancelled; if the command does not catch that,
-// this function says so and returns the exit code of the signal.
-[[nodiscard]] int unless_interrupted(const std::function<int()>& command);
+// this function prints `words` and returns the exit code of the signal.
+[[nodiscard]] int unless_interrupted(const std::function<int()>& command,
+                                     const std::string& words = "exactff: interrupted\n");
 
 // Calls `prepare`, shows the progress of what it makes (exactff/jobs.h), and throws Cancelled after a signal.
 template <class Prepare>
@@ -104,10 +106,19 @@ auto with_progress(const Prepare& prepare) {
 // "2/4"; one shard if the text is empty. Throws InputError.
 [[nodiscard]] jobs::Shard shard_of(const std::string& text);
 
-// Of --resume and --force.
-[[nodiscard]] inline jobs::Existing existing_of(bool resume, bool force) {
-  return resume ? jobs::Existing::kResume : force ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
-}
+// --resume and --force, of the arguments of a command.
+struct KeptRun {
+  bool resume = false, force = false;
+
+  void add_to(CLI::App& app, const std::string& what_force_does,
+              const std::string& what_resume_does = "Continue an interrupted run, if there is one") {
+    CLI::Option* option = app.add_flag("--resume", resume, what_resume_does);
+    app.add_flag("--force", force, what_force_does)->excludes(option);
+  }
+  [[nodiscard]] jobs::Existing existing() const {
+    return resume ? jobs::Existing::kResume : force ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
+  }
+};
 
 constexpr double kNeverSlow = std::numeric_limits<double>::infinity();  // seconds: where long rows are usual
 

@@ -36,32 +36,30 @@ using radiosity::kChannelNames;
 using radiosity::Solution;
 
 constexpr const char* kRadiosityFooter =
-    "Solves B = E + rho F B for the radiosity B of each patch: E is Ke, rho is Kd, F are the view factors between\n"
-    "all patches. B lies between lower and upper. These bounds are as strong as the claim, the weakest of the view\n"
-    "factors'. There is no upper bound where the bounds of the view factors do not prove that less light is\n"
-    "reflected than arrives, as in a closed room of Kd 1. The output then says why, 'radiosity' is an estimate\n"
-    "(unknown, if some Kd is 1).\n"
+    "Solves B = E + rho F B for the radiosity B of each patch: E is Ke, rho is Kd, F are the view factors between all\n"
+    "patches. B lies between lower and upper. These bounds are as strong as the claim, the weakest of the view\n"
+    "factors'. There is no upper bound where the bounds of the view factors do not prove that less light is reflected\n"
+    "than arrives, as in a closed room of Kd 1. The output then says why, 'radiosity' is an estimate (unknown, if\n"
+    "some Kd is 1).\n"
     "The exit code is 3 without an upper bound, and if view factors miss the accuracy or bounds miss the width.\n"
     "Emitted light must be absorbed, meet backs of faces, or leave; if the bounds contradict this, the exit code is\n"
     "1. 'variation' shows where patches are too large: by how much the light that leaves single points of a patch\n"
-    "(its centre, and near its corners), by exact form factors, differs from its one radiosity. --divide LENGTH\n"
-    "makes smaller patches. `exactff render --radiosity FILE` shows the light of the file that -o writes.\n"
+    "(its centre, and near its corners), by exact form factors, differs from its one radiosity. --divide LENGTH makes\n"
+    "smaller patches. `exactff render --radiosity FILE` shows the light of the file that -o writes.\n"
     "--width W asks for bounds of at most W times the brightest radiosity of their channel. Only the view factors\n"
     "that widen some bounds too much are computed again, with the accuracy divided by a power of two. If --budget\n"
     "does not allow the width, a warning says how wide the bounds are, and why.\n"
-    "--matrix FILE takes the view factors from a file of `exactff matrix SCENE -o FILE`. That run can be resumed,\n"
-    "and shared out by --shard and mpirun. A file of another scene is refused.\n"
+    "--matrix FILE takes the view factors from a file of `exactff matrix SCENE -o FILE`. That run can be resumed, and\n"
+    "shared out by --shard and mpirun. A file of another scene is refused.\n"
     "With -o FILE, finished view factors are kept until all is done: in FILE.factors.part, and those that --width\n"
     "computes again in FILE.again.part. After an interruption, --resume continues from there. A complete\n"
     "FILE stays as it is, and the file of --vtk is made from it.\n"
-    "The balance is printed as bounds [lower, upper]; a number alone is rounded to six digits. Lost light meets\n"
-    "backs or leaves (open). One of the two is known where the other is proved to be zero. Elsewhere --backs\n"
-    "computes what meets backs; a matrix made with --backs --to all,sky has both.\n"
-    "--temperatures FILE solves the exchange of sigma T^4 between gray surfaces of emissivity 1 - Kd. Each patch has "
-    "a\n"
-    "row with its T in K, or with the heat Q in W that it gives off, 0 for one that only reflects and emits again. "
-    "The\n"
-    "rows (back) and (open) may have a T, which is else 0 K. Values are by the balanced matrix, if there is one.\n"
+    "The balance is printed as bounds [lower, upper]; a number alone is rounded to six digits. Lost light meets backs\n"
+    "or leaves (open). One of the two is known where the other is proved to be zero. Elsewhere --backs computes what\n"
+    "meets backs; a matrix made with --backs --to all,sky has both.\n"
+    "--temperatures FILE solves the exchange of sigma T^4 between gray surfaces of emissivity 1 - Kd. Each patch has\n"
+    "a row with its T in K, or with the heat Q in W that it gives off, 0 for one that only reflects and emits again.\n"
+    "The rows (back) and (open) may have a T, which is else 0 K. Values are by the balanced matrix, if there is one.\n"
     "\n"
     "Examples:\n"
     "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4\n"
@@ -70,7 +68,7 @@ constexpr const char* kRadiosityFooter =
 
 constexpr std::size_t kMostPatchesShown = 40;
 
-struct RadiosityArguments {
+struct RadiosityArguments : KeptRun {
   flags::SceneArguments scene;
   std::vector<std::string> two_sided;
   radiosity::Options options;
@@ -79,9 +77,7 @@ struct RadiosityArguments {
   std::string output, vtk;
   std::string matrix;        // a file
   std::string temperatures;  // likewise, of conditions
-  bool resume = false, force = false;
 
-  [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
   // While they are computed, view factors are kept beside the file of -o. A pipe or a device has no journal.
   // Whether FILE is there, and nothing that belongs to an unfinished one.
   [[nodiscard]] bool is_complete() const {
@@ -302,7 +298,7 @@ void require_light(const RadiosityArguments& args, const Scene& scene, const std
   if (any_emits) return;
   const auto says_nothing = [](const Material& m) { return m.reflectance == Rgb{1, 1, 1} && m.radiosity == Rgb{}; };
   text::refuse(
-      std::filesystem::path(args.scene.path), "no patch emits light", "every radiosity would be 0",
+      args.scene.path, "no patch emits light", "every radiosity would be 0",
       std::ranges::all_of(scene.materials(), says_nothing)
           ? "the scene has no materials, so Kd is 1 everywhere: exactff convert writes an OBJ file with an MTL "
             "file, in which each material gets its Kd and some a Ke; for view factors alone, use exactff matrix"
@@ -315,23 +311,20 @@ void warn_of_no_bound(const Solution& solution) {
     if (channel.is_bounded()) continue;
     const bool is_estimated = std::ranges::none_of(
         channel.radiosity, [](double value) { return std::isnan(value); }, &BoundedValue::value);
-    print_warnings(
-        std::vector<Problem>{{.what = "there is no bound for " + std::string(kChannelNames[c]) +
-                                      (is_estimated ? ", and what is printed is an estimate" : ", nor an estimate"),
-                              .why = channel.no_bound,
-                              .suggestion = channel.remedy}});
+    print_warning("there is no bound for " + std::string(kChannelNames[c]) +
+                      (is_estimated ? ", and what is printed is an estimate" : ", nor an estimate"),
+                  channel.no_bound, channel.remedy);
   }
 }
 
 // Whether the balance holds, or cannot be tested.
 bool test_balance(const Solution& solution) {
   if (!solution.reasons_against_balance.empty() || is_balanced(solution)) return true;
-  print_warnings(
-      std::vector<Problem>{{.what = "what is emitted is not what is absorbed, meets backs and leaves",
-                            .why = solution.claim_of_balance == Claim::kEstimated
-                                       ? "an estimated view factor misses its interval, or a bound does not hold"
-                                       : "it must be, so a bound of a view factor does not hold",
-                            .suggestion = "please report the scene"}});
+  print_warning("what is emitted is not what is absorbed, meets backs and leaves",
+                solution.claim_of_balance == Claim::kEstimated
+                    ? "an estimated view factor misses its interval, or a bound does not hold"
+                    : "it must be, so a bound of a view factor does not hold",
+                "please report the scene");
   return false;
 }
 
@@ -414,13 +407,12 @@ void warn_of_wide_bounds(const RadiosityArguments& args, const Scene& scene, con
   const radiosity::Widest widest = radiosity::widest_bounds(solution);
   const auto is_at_limit = [](const ViewFactor& f) { return f.limit != Limit::kNone; };
   const auto limited = static_cast<std::uint64_t>(std::ranges::count_if(matrix.factors.entries, is_at_limit));
-  print_warnings(std::vector<Problem>{
-      {.what = "the bounds of '" + scene.name_of(solution.patches[widest.patch]) + "' in " +
-               std::string(kChannelNames[widest.channel]) + " are " + text::short_number(widest.share, 2) +
-               " of the brightest radiosity wide, the widest of all, and not " + text::shortest(*solution.width),
-       .why = text::counted(limited, "view factor is", "view factors are") + " as narrow as " +
-              text::counted(args.options.factors.budget, "cell") + ", or roundings, allow",
-       .suggestion = "give more by --budget, or ask for less by --width"}});
+  print_warning("the bounds of '" + scene.name_of(solution.patches[widest.patch]) + "' in " +
+                    std::string(kChannelNames[widest.channel]) + " are " + text::short_number(widest.share, 2) +
+                    " of the brightest radiosity wide, the widest of all, and not " + text::shortest(*solution.width),
+                text::counted(limited, "view factor is", "view factors are") + " as narrow as " +
+                    text::counted(args.options.factors.budget, "cell") + ", or roundings, allow",
+                "give more by --budget, or ask for less by --width");
 }
 
 // A width decides alone.
@@ -436,7 +428,7 @@ void require_same_request(const RadiosityArguments& args, const radiosity::Solut
                        file.width == args.options.width &&
                        (!options.certify || matrix::weaker(file.claim, Claim::kCertified) == Claim::kCertified);
   if (is_same) return;
-  text::refuse(std::filesystem::path(file.file), "holds radiosities by other view factors",
+  text::refuse(file.file, "holds radiosities by other view factors",
                "its head has another accuracy, budget, width or claim",
                "use the same flags as before, name another file, or compute it again with --force");
 }
@@ -523,9 +515,7 @@ int run_temperatures(const RadiosityArguments& args, const Scene& scene) {
   balance_if_possible(scene, matrix);
   const radiosity::Temperatures found = radiosity::temperatures(scene, matrix, conditions);
   if (!found.is_bounded()) {
-    print_warnings(std::vector<Problem>{{.what = "temperatures have no bound, and none is printed",
-                                         .why = found.no_bound,
-                                         .suggestion = found.remedy}});
+    print_warning("temperatures have no bound, and none is printed", found.no_bound, found.remedy);
     return kNotAsAsked;
   }
   const table::Table table = table_of(scene, found, options);
@@ -550,9 +540,7 @@ int run(const RadiosityArguments& given) {
   if (args.resume && args.is_complete()) return finish_again(args, scene);
   const std::vector<Selection> patches = radiosity::patches_of(scene);
   require_light(args, scene, patches);
-  if (std::optional<Problem> overlaps = problem_of_overlaps(scene, patches)) {
-    print_warnings(std::vector<Problem>{std::move(*overlaps)});
-  }
+  if (const auto overlaps = problem_of_overlaps(scene, patches)) print_warnings(std::span(&*overlaps, 1));
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
   std::optional<matrix::Matrix> matrix = view_factors_of(args, scene, patches, hooks, args.options.factors);
@@ -592,10 +580,8 @@ void add_outputs(CLI::App& command, RadiosityArguments& args) {
                      flags::Beside::kViewFactors);
   flags::add_written(command, "--vtk", args.vtk,
                      "Write the scene with its radiosities for ParaView, as NAME.vtp or NAME.vtu", flags::Format::kVtk);
-  CLI::Option* resume =
-      command.add_flag("--resume", args.resume,
-                       "Continue an interrupted run with its kept view factors, or keep a complete file; needs -o");
-  command.add_flag("--force", args.force, "Start again and replace existing files")->excludes(resume);
+  args.add_to(command, "Start again and replace existing files",
+              "Continue an interrupted run with its kept view factors, or keep a complete file; needs -o");
 }
 
 }  // namespace
@@ -607,17 +593,15 @@ Command add_radiosity(CLI::App& app) {
   command->footer(kRadiosityFooter);
   args->scene.add_to(*command);
   args->scene.add_divide_to(*command);
-  command->add_option("--two-sided", args->two_sided, kTwoSidedHelp)->type_name("NAME");
+  flags::add_value(*command, "--two-sided", args->two_sided, "NAME", kTwoSidedHelp);
   CLI::Option* accuracy =
       command->add_option("--accuracy", args->accuracy, "Largest width of a view factor, for F_ij and for F_ji")
           ->default_str("1e-06, or four times --width");
   CLI::Option* budget = command->add_option("--budget", args->options.factors.budget, kBudgetHelp)
                             ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
                             ->capture_default_str();
-  command
-      ->add_option("--width", args->options.width,
+  flags::add_value(*command, "--width", args->options.width, "FLOAT",
                    "Largest width of the bounds of a radiosity, as a share of the brightest of its channel")
-      ->type_name("FLOAT")
       ->check(flags::is_positive);
   CLI::Option* backs =
       command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces, for the balance");

@@ -26,6 +26,32 @@
 namespace exactff::cli {
 namespace {
 
+struct RenderArguments : KeptRun {
+  flags::SceneArguments scene;
+  flags::SourceArguments sources;
+  flags::SolutionArgument solution;
+  flags::CameraArguments camera;
+  std::optional<double> ortho;
+  std::string size = "512x512";
+  std::string lightmap;  // its size
+  std::vector<std::string> on;
+  int uv = 0, margin = 0;
+  int spp = 1;
+  bool two_sided = false;
+  std::string quantity;
+  flags::MeasureArgument measure;
+  bool sphere = false;
+  std::string ke = "radiosity";
+  std::string method, against;
+  bool strip = false;
+  bool layers = false;
+  std::optional<double> exposure;
+  std::string doubles, bounds;
+  flags::EngineArgument engine;
+  int threads = 0;
+  std::string image;
+};
+
 // --- what it writes and prints ---
 
 struct Rendered {
@@ -35,12 +61,6 @@ struct Rendered {
   std::optional<render::Errors> errors = {};
 };
 
-struct RenderFiles {
-  std::string image, doubles, bounds;
-  std::optional<double> exposure;
-  bool strip = false;
-};
-
 namespace fs = std::filesystem;
 
 // Opens the file beside its place, as writing it will, and removes it.
@@ -48,7 +68,7 @@ void check_file(const std::string& file) {
   std::error_code ignored;
   if (fs::is_other(file, ignored)) return;
   if (fs::is_directory(file, ignored)) {
-    text::refuse(fs::path(file), "is a folder", "the result is a file", "name a file");
+    text::refuse(file, "is a folder", "the result is a file", "name a file");
   }
   const files::WholeFile probe(file);
 }
@@ -61,18 +81,6 @@ void write_array(const std::string& file, const std::vector<std::size_t>& shape,
 }
 
 std::string took(const render::Picture& picture) { return text::duration(picture.seconds); }
-
-// Not read from a file.
-bool is_computed(const render::Picture& picture) { return picture.seconds > 0.0; }
-
-std::string error_words(const render::Errors& errors) {
-  return "RMS " + text::short_number(errors.rms) + ", 99th percentile " + text::short_number(errors.p99) + ", worst " +
-         text::short_number(errors.worst);
-}
-
-std::string wrong_words(const render::Errors& errors) {
-  return text::share(errors.wrong, errors.pixels) + " of pixels wrong by over 10 %";
-}
 
 // For a method with a formula of its own, that name; the exact values have none.
 std::string name_of_picture(const render::Picture& picture) {
@@ -95,11 +103,11 @@ std::string strip_words(const Rendered& rendered) {
          " on, black outlines around regions that are mostly wrong by over 10 %";
 }
 
-std::string image_bytes(const RenderFiles& files, const Rendered& rendered) {
-  const bool png = render::image_kind(files.image) == render::ImageKind::kPng;
-  const auto exposure = [&] { return files.exposure ? *files.exposure : render::automatic_exposure(rendered.picture); };
+std::string image_bytes(const RenderArguments& args, const Rendered& rendered) {
+  const bool png = render::image_kind(args.image) == render::ImageKind::kPng;
+  const auto exposure = [&] { return args.exposure ? *args.exposure : render::automatic_exposure(rendered.picture); };
   render::Metadata metadata = rendered.picture.metadata;
-  if (files.strip) {
+  if (args.strip) {
     metadata.emplace_back("strip", strip_words(rendered));
     return render::png_of(strip_of(rendered, exposure()), metadata);
   }
@@ -124,27 +132,27 @@ std::string words_of_pixels(const render::Picture& picture) {
   return words;
 }
 
-// Throws InputError if a file cannot be written. Empty names are left out.
-void check_files(const std::vector<std::string>& images, const std::vector<std::string>& arrays) {
-  for (const std::string& file : images) check_file(file);
-  for (const std::string& file : arrays) {
+// Throws InputError if a file cannot be written.
+void check_files(const RenderArguments& args) {
+  check_file(args.image);
+  for (const std::string& file : {args.doubles, args.bounds}) {
     if (file.empty()) continue;
     if (fs::path(file).extension() != ".npy") {
-      text::refuse(fs::path(file), "does not end in .npy", "it is a NumPy file, which other programs recognise by that",
+      text::refuse(file, "does not end in .npy", "it is a NumPy file, which other programs recognise by that",
                    "name a .npy file");
     }
     check_file(file);
   }
 }
 
-void write_files(const RenderFiles& files, const Rendered& rendered) {
+void write_files(const RenderArguments& args, const Rendered& rendered) {
   const render::Picture& picture = rendered.picture;
   const auto height = static_cast<std::size_t>(picture.size.height),
              width = static_cast<std::size_t>(picture.size.width);
-  const std::string image = image_bytes(files, rendered);
-  if (!files.doubles.empty()) write_array(files.doubles, {height, width, 3}, {&picture.values});
-  if (!files.bounds.empty()) write_array(files.bounds, {2, height, width, 3}, {&picture.lower, &picture.upper});
-  write_whole_file(files.image, image);
+  const std::string image = image_bytes(args, rendered);
+  if (!args.doubles.empty()) write_array(args.doubles, {height, width, 3}, {&picture.values});
+  if (!args.bounds.empty()) write_array(args.bounds, {2, height, width, 3}, {&picture.lower, &picture.upper});
+  write_whole_file(args.image, image);
 }
 
 // "12 faces; 3 have ...; 40 texels lie in several faces: ..."
@@ -165,28 +173,31 @@ std::string words_of(const Scene& scene, const render::Charts& charts) {
 }
 
 // The summary on standard output. `tell_camera`: the camera was chosen by the program.
-void print_rendered(const Scene& scene, const Rendered& rendered, const RenderFiles& files, const std::string& camera) {
+void print_rendered(const Scene& scene, const Rendered& rendered, const RenderArguments& args,
+                    const std::string& camera) {
   const render::Picture& picture = rendered.picture;
   std::cout << picture.size.width << " x " << picture.size.height << (picture.charts ? " texels: " : " pixels: ")
             << words_of_pixels(picture) << '\n';
   if (picture.charts) std::cout << "charts: " << text::printable(words_of(scene, *picture.charts)) << '\n';
   std::cout << "computed in " << took(picture) << " of processor time";
-  if (rendered.judged && is_computed(*rendered.judged))
+  if (rendered.judged && rendered.judged->seconds > 0.0)  // not read from a file
     std::cout << ", " << text::printable(rendered.judged_name) << " in " << took(*rendered.judged);
   std::cout << '\n';
   if (!camera.empty()) std::cout << "camera: " << camera << '\n';
   if (rendered.errors) {
     const render::Errors& errors = *rendered.errors;
-    std::cout << "errors: " << error_words(errors) << "; relative: median "
-              << text::short_number(errors.relative_median) << ", 99th percentile "
-              << text::short_number(errors.relative_p99) << "; " << wrong_words(errors) << '\n';
+    std::cout << "errors: RMS " << text::short_number(errors.rms) << ", 99th percentile "
+              << text::short_number(errors.p99) << ", worst " << text::short_number(errors.worst)
+              << "; relative: median " << text::short_number(errors.relative_median) << ", 99th percentile "
+              << text::short_number(errors.relative_p99) << "; " << text::share(errors.wrong, errors.pixels)
+              << " of pixels wrong by over 10 %\n";
   }
-  if (files.strip) std::cout << "strip: " << text::printable(strip_words(rendered)) << '\n';
-  const bool develops = render::image_kind(files.image) == render::ImageKind::kPng && (files.strip || !rendered.errors);
-  if (develops && !files.exposure) {
+  if (args.strip) std::cout << "strip: " << text::printable(strip_words(rendered)) << '\n';
+  const bool develops = render::image_kind(args.image) == render::ImageKind::kPng && (args.strip || !rendered.errors);
+  if (develops && !args.exposure) {
     std::cout << "automatic exposure: " << text::short_number(render::automatic_exposure(picture), 6) << '\n';
   }
-  std::cout << "Image: " << text::printable(files.image) << '\n';
+  std::cout << "Image: " << text::printable(args.image) << '\n';
 }
 
 // Returns the exit code: 3, with a message, if a value is not certified.
@@ -203,25 +214,21 @@ constexpr const char* kRenderFooter =
     "directly from all sources, correctly rounded: soft shadows without noise. IMAGE is OpenEXR (.exr, 32-bit linear\n"
     "values) or PNG (.png, in sRGB, for looking). Backs of faces are black.\n"
     "With --radiosity FILE, the light is that of all bounces: Ke + Kd times the sum over all patches of form factor,\n"
-    "exact at the point, and radiosity, from FILE. The channels lower.R ... upper.B of an EXR file, and --bounds, "
-    "bound\n"
-    "this sum for all radiosities within their bounds. They do not bound the true light, which varies over a patch;\n"
-    "--divide makes patches smaller.\n"
+    "exact at the point, and radiosity, from FILE. The channels lower.R ... upper.B of an EXR file, and --bounds,\n"
+    "bound this sum for all radiosities within their bounds. They do not bound the true light, which varies over a\n"
+    "patch; --divide makes patches smaller.\n"
     "Without --eye and --look, the camera shows the whole scene from its most open side, or stands in a corner of a\n"
     "closed room. It is printed, so that it can be changed.\n"
     "With --against METHOD, IMAGE shows the errors of this method: white is none, red too bright, blue too dark;\n"
     "regions that are wrong by over 10 % are outlined. --strip shows the picture, that of the method and the errors\n"
-    "beside each other; what they are is printed, and not written into the image. A METHOD is a name with settings, "
-    "as\n"
-    "for `exactff compare`: adaptive:eps_B=0.01,rays=16. --against also takes the picture of another program, of the\n"
-    "same camera, size and --quantity: a .npy array (height, width, 3) or .exr.\n"
-    "With --lightmap WxH, IMAGE is in texture space, for scenes with texture coordinates: row 0 is at v = 1, the "
-    "centre\n"
-    "of column 0 at u = 0.5 / W. A texel whose centre lies in a face, decided exactly, has the irradiance (or\n"
-    "--quantity) at the point that the centre stands for; the others are 0. In EXR, the channel A is 1 for the former "
-    "and\n"
-    "0 for the latter; with --margin, `margin` is the distance in texels from where one was copied. --against FILE\n"
-    "compares with a baker's map.\n"
+    "beside each other; what they are is printed, and not written into the image. A METHOD is a name with settings,\n"
+    "as for `exactff compare`: adaptive:eps_B=0.01,rays=16. --against also takes the picture of another program, of\n"
+    "the same camera, size and --quantity: a .npy array (height, width, 3) or .exr.\n"
+    "With --lightmap WxH, IMAGE is in texture space, for scenes with texture coordinates: row 0 is at v = 1, the\n"
+    "centre of column 0 at u = 0.5 / W. A texel whose centre lies in a face, decided exactly, has the irradiance (or\n"
+    "--quantity) at the point that the centre stands for; the others are 0. In EXR, the channel A is 1 for the former\n"
+    "and 0 for the latter; with --margin, `margin` is the distance in texels from where one was copied. --against\n"
+    "FILE compares with a baker's map.\n"
     "Until IMAGE is complete, finished tiles are kept in IMAGE.part. After an interruption, the same command with\n"
     "--resume continues from there. The numbers do not depend on threads or interruptions.\n"
     "Exit codes: 0 done, 2 bad input, 3 done but some pixels are not certified, 128 + signal when interrupted.\n"
@@ -233,59 +240,23 @@ constexpr const char* kRenderFooter =
     "  exactff render data/scenes/cornell_box.obj --radiosity build/cells.csv --size 256x256 -o all_light.exr\n"
     "  exactff render room.obj --lightmap 512x512 --margin 2 --layers -o lightmap.exr";
 
-struct RenderArguments {
-  flags::SceneArguments scene;
-  flags::SourceArguments sources;
-  flags::SolutionArgument solution;
-  flags::CameraArguments camera;
-  std::optional<double> ortho;
-  std::string size = "512x512";
-  std::string lightmap;  // its size
-  std::vector<std::string> on;
-  int uv = 0, margin = 0;
-  int spp = 1;
-  bool two_sided = false;
-  std::string quantity;
-  flags::MeasureArgument measure;
-  bool sphere = false;
-  std::string ke = "radiosity";
-  std::string method, against;
-  bool strip = false;
-  bool layers = false;
-  std::optional<double> exposure;
-  std::string doubles, bounds;
-  flags::EngineArgument engine;
-  int threads = 0;
-  bool resume = false;
-  bool force = false;
-  std::string image;
-
-  [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
-};
-
 std::string size_flag(const RenderArguments& args) { return args.lightmap.empty() ? "--size" : "--lightmap"; }
 
 render::Size size_of(const RenderArguments& args) {
   const std::string& text = args.lightmap.empty() ? args.size : args.lightmap;
-  const std::size_t cross = text.find('x');
-  const auto width = flags::whole_number<int>(text.substr(0, cross));
-  const auto height = cross == std::string::npos ? std::nullopt : flags::whole_number<int>(text.substr(cross + 1));
-  if (width && height) return {*width, *height};
+  if (const auto size = flags::numbers_across(text)) return {size->first, size->second};
   text::refuse(size_flag(args) + ": " + text::in_quotes(text) + " is not a size",
                "a picture has a width and a height in pixels", "write WIDTHxHEIGHT: " + size_flag(args) + " 512x512");
 }
 
-// The camera of --eye and --look.
-render::Camera placed_camera(const RenderArguments& args, const Scene& scene) {
-  render::Camera camera = args.camera.camera(scene);
-  camera.ortho = args.ortho;
-  return camera;
-}
-
-render::Camera default_camera(const RenderArguments& args, const Scene& scene, const render::Size& size) {
+// By the camera of --eye and --look, or one that the program places.
+render::View view_of(const RenderArguments& args, const Scene& scene, const render::Size& size) {
   render::CameraWishes wishes = args.camera.wishes();
   wishes.ortho = args.ortho;
-  return render::default_camera(scene, wishes, size);
+  if (!args.camera.is_placed()) return render::View(render::default_camera(scene, wishes, size), size);
+  render::Camera camera = args.camera.camera(scene);
+  camera.ortho = args.ortho;
+  return render::View(camera, size);
 }
 
 // What can be refused before the scene is read.
@@ -310,16 +281,10 @@ void check_arguments(const RenderArguments& args) {
     text::refuse("--layers needs an EXR file and no --against", "a PNG file and a picture of errors have no layers",
                  "name a .exr file, without --against");
   }
-  check_files({args.image}, {args.doubles, args.bounds});
+  check_files(args);
 }
 
-// Checked before the scene is read, since the name may be misspelt.
-std::optional<methods::Choice> method_named(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  return methods::parse(text);
-}
-
-// What --against names: a method, or a picture of the same size.
+// What --against names, if it is given: a method, or a picture of the same size.
 struct Opponent {
   std::optional<methods::Choice> method = {};
   std::optional<render::Picture> picture = {};
@@ -327,13 +292,14 @@ struct Opponent {
 
 Opponent opponent_named(const RenderArguments& args) {
   const std::string& text = args.against;
-  const std::string extension = text::in_lower_case(std::filesystem::path(text).extension().string());
-  if (extension != ".npy" && extension != ".exr") return {.method = method_named(text)};
+  if (text.empty()) return {};
+  const std::string extension = text::in_lower_case(fs::path(text).extension().string());
+  if (extension != ".npy" && extension != ".exr") return {.method = methods::parse(text)};
   render::Picture picture = render::read_picture(text);
   const render::Size size = size_of(args);
   const auto words = [](const render::Size& one) { return fmt::format("{}x{}", one.width, one.height); };
   if (words(picture.size) != words(size)) {
-    text::refuse(fs::path(text), fmt::format("has {} pixels, and the picture {}", words(picture.size), words(size)),
+    text::refuse(text, fmt::format("has {} pixels, and the picture {}", words(picture.size), words(size)),
                  "each pixel is compared with one of the same place",
                  fmt::format("give {} {}", size_flag(args), words(picture.size)));
   }
@@ -351,15 +317,13 @@ render::Request request_of(const RenderArguments& args, const flags::LitScene& l
   const Scene& scene = lit.scene;
   render::Request request{.scene = &scene};
   request.radiosities = lit.radiosities;
-  request.scene_name = args.scene.from_standard_input() ? std::string(flags::kStandardInput)
-                                                        : std::filesystem::path(args.scene.path).filename().string();
+  request.scene_name = args.scene.file_name();
   const render::Size size = size_of(args);
   if (!args.lightmap.empty()) {
     request.lightmap = {size, args.uv, {}, args.margin};
     if (!args.on.empty()) request.lightmap->on = flags::selections_named(scene, args.on);
   } else {
-    request.view =
-        render::View(args.camera.is_placed() ? placed_camera(args, scene) : default_camera(args, scene, size), size);
+    request.view = view_of(args, scene, size);
   }
   flags::SourcesUnderSky sources = flags::sources_under_sky(args.sources, scene);
   request.sources = std::move(sources.sources);
@@ -400,10 +364,9 @@ class Kept {
     journal_.emplace(jobs::journal_of_folder(args.image), args.existing());
     const std::optional<std::string> found = journal_->find(kRequest);
     if (found && *found != identity) {
-      throw InputError({.file = journal_->path().string(),
-                        .what = "holds finished tiles of another image",
-                        .why = "tiles of different images cannot be mixed",
-                        .suggestion = "use the same flags as before, name another image, or start again with --force"});
+      text::refuse(journal_->path(), "holds finished tiles of another image",
+                   "tiles of different images cannot be mixed",
+                   "use the same flags as before, name another image, or start again with --force");
     }
     if (!found) journal_->add(kRequest, identity);
     before_ = journal_->size() - 1;
@@ -453,7 +416,8 @@ Rendered render_pictures(const render::Request& request, const Opponent& against
 
 int run(const RenderArguments& args) {
   check_arguments(args);
-  const auto method = method_named(args.method);
+  std::optional<methods::Choice> method;
+  if (!args.method.empty()) method = methods::parse(args.method);  // before the scene is read: it may be misspelt
   const Opponent against = opponent_named(args);
   const flags::LitScene lit = with_progress([&] { return flags::load(args.scene, args.solution); });
   const Scene& scene = lit.scene;
@@ -467,20 +431,19 @@ int run(const RenderArguments& args) {
   const InterruptWatch watch("exactff: interrupted; " + kept.words());
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
-  const RenderFiles files{args.image, args.doubles, args.bounds, args.exposure, args.strip};
   Rendered result;
   try {
     result = render_pictures(request, against, hooks, kept.journal());
     bar.clear();
     leave_if_interrupted();
-    write_files(files, result);
+    write_files(args, result);
   } catch (const Cancelled&) {
     bar.clear();
     std::cerr << "exactff: interrupted; " << (kept.has_some() ? kept.words() : "nothing was written\n");
     return 128 + interrupting_signal();
   }
   kept.done();
-  print_rendered(scene, result, files, words_of_camera(args, request.view));
+  print_rendered(scene, result, args, words_of_camera(args, request.view));
   check_output(std::cout);
   return warn_of_uncertified_points(result);
 }
@@ -488,33 +451,30 @@ int run(const RenderArguments& args) {
 void add_camera_flags(CLI::App& app, RenderArguments& args) {
   args.camera.add_to(app, "Where the camera stands (default: where it shows the whole scene)",
                      "The point that it looks at");
-  app.add_option("--ortho", args.ortho, "Parallel rays; the picture has this height in the scene's unit")
-      ->type_name("LENGTH")
+  flags::add_value(app, "--ortho", args.ortho, "LENGTH",
+                   "Parallel rays; the picture has this height in the scene's unit")
       ->check(flags::is_positive);
-  app.add_option("--size", args.size, "Width and height in pixels")->type_name("WxH")->capture_default_str();
-  app.add_option("--spp", args.spp,
-                 "Anti-aliasing: a pixel is the mean of the exact values at the centres of N x N parts of it")
+  flags::add_value(app, "--size", args.size, "WxH", "Width and height in pixels")->capture_default_str();
+  flags::add_value(app, "--spp", args.spp, "N",
+                   "Anti-aliasing: a pixel is the mean of the exact values at the centres of N x N parts of it")
       ->check(CLI::Range(1, 64))
-      ->type_name("N")
       ->capture_default_str();
 }
 
 void add_lightmap_flags(CLI::App& app, RenderArguments& args) {
-  CLI::Option* lightmap =
-      app.add_option("--lightmap", args.lightmap,
-                     "Instead of a camera's picture, one in texture space: each texel has the light of the point of a "
-                     "face that its centre stands for, by the file's texture coordinates (vt)")
-          ->type_name("WxH");
+  CLI::Option* lightmap = flags::add_value(
+      app, "--lightmap", args.lightmap, "WxH",
+      "Instead of a camera's picture, one in texture space: each texel has the light of the point of a "
+      "face that its centre stands for, by the file's texture coordinates (vt)");
   for (const char* flag : {"--size", "--eye", "--look", "--fov", "--ortho", "--spp"})
     lightmap->excludes(app.get_option(flag));
   flags::add_names(app, "--on", args.on, "Lightmap: only of these patches or faces");
-  app.add_option("--uv", args.uv, "Lightmap: which set of texture coordinates; files of OBJ have set 0")
+  flags::add_value(app, "--uv", args.uv, "0|1", "Lightmap: which set of texture coordinates; files of OBJ have set 0")
       ->check(CLI::Range(0, kTextureSets - 1))
-      ->type_name("0|1")
       ->capture_default_str();
-  app.add_option("--margin", args.margin, "Lightmap: copy texels at the edges of faces so many texels outwards")
+  flags::add_value(app, "--margin", args.margin, "N",
+                   "Lightmap: copy texels at the edges of faces so many texels outwards")
       ->check(CLI::Range(0, render::kLongestSide))
-      ->type_name("N")
       ->capture_default_str();
   for (const char* flag : {"--on", "--uv", "--margin"}) app.get_option(flag)->needs(lightmap);
 }
@@ -531,9 +491,9 @@ void add_value_flags(CLI::App& app, RenderArguments& args) {
   app.add_option("--ke", args.ke, "What Ke means in the scene")
       ->check(CLI::IsMember({"radiosity", "radiance"}))
       ->capture_default_str();
-  app.add_option("--method", args.method, "Render by this method instead of exactly")->type_name("METHOD");
-  app.add_option("--against", args.against, "Show and print the errors of this method, or of this picture")
-      ->type_name("METHOD|FILE")
+  flags::add_value(app, "--method", args.method, "METHOD", "Render by this method instead of exactly");
+  flags::add_value(app, "--against", args.against, "METHOD|FILE",
+                   "Show and print the errors of this method, or of this picture")
       ->check(flags::is_read());
   app.add_flag("--strip", args.strip, "With --against: the picture, that of the method and the errors side by side");
 }
@@ -542,8 +502,8 @@ void add_output_flags(CLI::App& app, RenderArguments& args) {
   app.add_flag(
       "--layers", args.layers,
       "EXR: add form factor, visible part and fraction of each source, position, normal, distance, face and patch");
-  app.add_option("--exposure", args.exposure, "PNG: multiply by this factor (default: the 99th percentile becomes 0.8)")
-      ->type_name("NUMBER")
+  flags::add_value(app, "--exposure", args.exposure, "NUMBER",
+                   "PNG: multiply by this factor (default: the 99th percentile becomes 0.8)")
       ->check(flags::is_positive);
   flags::add_written(
       app, "--double", args.doubles,
@@ -573,8 +533,7 @@ Command add_render(CLI::App& app) {
   flags::add_written(*command, "-o,--output", args->image, "Image to write, .exr or .png; an existing one is replaced",
                      flags::Format::kImage, flags::Beside::kJournal)
       ->required();
-  CLI::Option* resume = command->add_flag("--resume", args->resume, "Continue an interrupted run, if there is one");
-  command->add_flag("--force", args->force, "Start again: discard the tiles of an interrupted run")->excludes(resume);
+  args->add_to(*command, "Start again: discard the tiles of an interrupted run");
   command->footer(kRenderFooter);
   return {command, [args] { return run(*args); }};
 }

@@ -40,28 +40,22 @@ constexpr const char* kCompareFooter =
     "  experiment karkanis-times\n"
     "Settings that cannot affect a scene are left out, and the report says which and why.\n"
     "Times are measured after all values, on one thread.\n"
-    "DIR appears only when it is complete. Until then, finished values are kept in DIR.part. After an interruption, "
-    "the\n"
-    "same command with --resume continues from there. A finished DIR is never replaced without --force; with "
-    "--resume,\n"
-    "a finished DIR of the same request stays as it is, so that scripts can always give --resume.\n"
+    "DIR appears only when it is complete. Until then, finished values are kept in DIR.part. After an interruption,\n"
+    "the same command with --resume continues from there. A finished DIR is never replaced without --force; with\n"
+    "--resume, a finished DIR of the same request stays as it is, so that scripts can always give --resume.\n"
     "\n"
     "Examples:\n"
     "  exactff compare data/scenes/cornell_box.obj --on floor --grid 32x32 -o cornell-report\n"
     "  exactff compare data/studies/default.study --abridged -o report\n"
     "  exactff compare --experiment meshing -o cells";
 
-struct CompareArguments {
+struct CompareArguments : KeptRun {
   flags::ComparisonArguments scene;
   std::vector<std::string> experiments;
   bool abridged = false;
   int threads = 0;
   std::string folder;
-  bool resume = false;
-  bool force = false;
   FurtherFiles further;
-
-  [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
 };
 
 std::string command_line(const CompareArguments& args) {
@@ -84,12 +78,8 @@ void require_free(const CompareArguments& args) {
                  "name a folder, or ./- for one of that name");
   }
   if (args.force || args.resume || !report::has_report(args.folder)) return;
-  throw InputError(
-      {.file = args.folder,
-       .what = "holds a finished report",
-       .why = "a finished result is not replaced by accident",
-       .suggestion =
-           "name another folder, keep it with --resume if it is of the same request, or replace it with --force"});
+  text::refuse(args.folder, "holds a finished report", "a finished result is not replaced by accident",
+               "name another folder, keep it with --resume if it is of the same request, or replace it with --force");
 }
 
 void check_outputs(const CompareArguments& args) {
@@ -116,10 +106,9 @@ bool is_done(const CompareArguments& args, const report::Plan& plan) {
   if (!args.resume || files::is_there(jobs::journal_of_folder(args.folder))) return false;
   const report::Finished finished = report::finished_report(plan, args.folder);
   if (finished == report::Finished::kOfAnother) {
-    throw InputError({.file = args.folder,
-                      .what = "holds the finished report of another request, or of another version of exactff",
-                      .why = "--resume continues the same request and replaces nothing",
-                      .suggestion = "use the same flags as before, name another folder, or replace it with --force"});
+    text::refuse(args.folder, "holds the finished report of another request, or of another version of exactff",
+                 "--resume continues the same request and replaces nothing",
+                 "use the same flags as before, name another folder, or replace it with --force");
   }
   return finished == report::Finished::kOfThis;
 }
@@ -253,24 +242,18 @@ Command add_compare(CLI::App& app) {
           "Scene file (OBJ, glTF, PLY, STL, OFF, View3D), @MODEL for a generated scene, or a .study file with several "
           "scenes; not needed with --experiment")
       ->required(false);
-  command
-      ->add_option("--experiment", args->experiments,
+  flags::add_value(*command, "--experiment", args->experiments, "EXPERIMENT",
                    "Add an experiment to the report; can be repeated: " + experiment_list())
-      ->type_name("EXPERIMENT")
       ->delimiter(',')
       ->take_all();
   command->add_flag("--abridged", args->abridged,
                     "Run a short version: grids of at most 12x12, fewer settings and receivers, short experiments");
   flags::add_threads(*command, args->threads);
-  command->add_option("-o,--output", args->folder, "Folder for the report and the tables")
+  flags::add_value(*command, "-o,--output", args->folder, "DIR", "Folder for the report and the tables")
       ->required()
-      ->type_name("DIR")
       ->check(flags::is_written_folder());
   args->further.add_vtk_to(*command);
-  CLI::Option* resume = command->add_flag("--resume", args->resume, "Continue an interrupted run, if there is one");
-  command
-      ->add_flag("--force", args->force, "Start again: discard the work of an interrupted run, replace a finished DIR")
-      ->excludes(resume);
+  args->add_to(*command, "Start again: discard the work of an interrupted run, replace a finished DIR");
   command->footer(kCompareFooter);
   return {command, [command, args] { return run(*command, *args); }};
 }
@@ -284,12 +267,10 @@ namespace {
 constexpr const char* kStressFooter =
     "A family is a scene with one number, its stiffness, that makes the scene more and more extreme. Without\n"
     "--family, all families are run; --list prints their names. A table shows the largest stiffness up to which each\n"
-    "method's error stays below 1e-3, 1e-6 and 1e-12; Tampieri's algorithm is judged by the tolerance that it was "
-    "given,\n"
-    "1e-4 of the unoccluded form factor. With --all, a table for each family shows the relative errors at\n"
-    "each stiffness. With -o, all tables are written as CSV, with a report and figures. After an interruption "
-    "(Ctrl-C),\n"
-    "the finished families are shown, and with -o they are written to DIR.part.\n"
+    "method's error stays below 1e-3, 1e-6 and 1e-12; Tampieri's algorithm is judged by the tolerance that it was\n"
+    "given, 1e-4 of the unoccluded form factor. With --all, a table for each family shows the relative errors at\n"
+    "each stiffness. With -o, all tables are written as CSV, with a report and figures. After an interruption\n"
+    "(Ctrl-C), the finished families are shown, and with -o they are written to DIR.part.\n"
     "acos, atan2, atan2-difference: Tampieri's contour formula, Eq. (4), in double over the exact visible region.\n"
     "tampieri, tampieri-literal: his ray-sampled algorithm, mended and as printed.\n"
     "Use --threads 1 for the most reliable times.\n"
@@ -420,14 +401,12 @@ Command add_stress(CLI::App& app) {
   auto args = std::make_shared<StressArguments>();
   CLI::App* command =
       app.add_subcommand("stress", "Show how the methods behave as scenes become more and more extreme");
-  command->add_option("--family", args->families, "Families, separated by commas (default: all)")
-      ->delimiter(',')
-      ->type_name("FAMILY");
+  flags::add_value(*command, "--family", args->families, "FAMILY", "Families, separated by commas (default: all)")
+      ->delimiter(',');
   command->add_flag("--list", args->list, "List the families and what their stiffness means");
   command->add_flag("--all", args->all, "Also print the errors at each stiffness, about a thousand lines");
   flags::add_threads(*command, args->threads);
-  command->add_option("-o,--output", args->folder, "Folder for the report and the tables")
-      ->type_name("DIR")
+  flags::add_value(*command, "-o,--output", args->folder, "DIR", "Folder for the report and the tables")
       ->check(flags::is_written_folder());
   command->footer(kStressFooter);
   return {command, [args] { return run(*args); }};

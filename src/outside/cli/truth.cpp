@@ -26,7 +26,7 @@ namespace {
 // --- The summary that `truth` and `merge` print at their end ---
 
 // Returns the exit code: 3, with a message, if a row is not certified.
-inline int warn_of_uncertified(const truth::Summary& summary) {
+int warn_of_uncertified(const truth::Summary& summary) {
   const std::uint64_t uncertified = summary.with(Status::kNotCertified);
   if (uncertified == 0) return 0;
   std::cerr << "exactff: " << text::counted(uncertified, "row")
@@ -36,7 +36,7 @@ inline int warn_of_uncertified(const truth::Summary& summary) {
 }
 
 // Prints the summary. Returns the exit code: 3 if a row is not certified.
-inline int print_summary(const truth::Summary& summary, const std::string& file, const FurtherFiles& further) {
+int print_summary(const truth::Summary& summary, const std::string& file, const FurtherFiles& further) {
   std::cout << text::counted(summary.rows, "row") << ':';
   const char* separator = " ";
   for (const Status status : {Status::kCertified, Status::kZero, Status::kUnderflow, Status::kNotCertified}) {
@@ -72,24 +72,21 @@ constexpr const char* kTruthFooter =
     "--resume continues from there. Scripts can always give --resume; a complete FILE stays as it is.\n"
     "On several machines: run `mpirun -n 4 exactff truth ...` (every process reads the scene and computes; rank 0\n"
     "writes), or start separate jobs with --shard 1/4, 2/4, ... and join their files with `exactff merge`.\n"
-    "With --radiosity FILE, totals (--total, otherwise irradiance) are of the light of all bounces: sums over all "
-    "patches\n"
-    "of form factor and radiosity, from FILE. total_lower_r ... total_upper_b bound this sum for all radiosities "
-    "within\n"
-    "their bounds; they do not bound the true light, which varies over a patch. Sources are those of the other "
-    "columns.\n"
-    "--npy, --npz, --vtk and --exr make their files from the finished FILE; --resume makes them again, also from a\n"
-    "merged FILE.\n"
+    "With --radiosity FILE, totals (--total, otherwise irradiance) are of the light of all bounces: sums over all\n"
+    "patches of form factor and radiosity, from FILE. total_lower_r ... total_upper_b bound this sum for all\n"
+    "radiosities within their bounds; they do not bound the true light, which varies over a patch. Sources are those\n"
+    "of the other columns. --npy, --npz, --vtk and --exr make their files from the finished FILE; --resume makes them\n"
+    "again, also from a merged FILE.\n"
     "The visible points of another renderer's pixels: --receivers GBUFFER.exr --on auto, with layers for position (in\n"
-    "world coordinates) and normal, 32-bit, one sample a pixel. --exr writes the exact values in the same pixels.\n"
-    "In a pipe, `-` as SCENE or --receivers is standard input, and -o - is standard output.\n"
+    "world coordinates) and normal, 32-bit, one sample a pixel. --exr writes the exact values in the same pixels. In\n"
+    "a pipe, `-` as SCENE or --receivers is standard input, and -o - is standard output.\n"
     "Exit codes: 0 done, 2 bad input, 3 done but some rows are not certified, 128 + signal when interrupted.\n"
     "\n"
     "Examples:\n"
     "  exactff truth data/scenes/cornell_box.obj --on floor --grid 200x200 -o truth.csv\n"
     "  exactff truth data/scenes/cornell_box.obj --receivers gbuffer.exr --on auto -o truth.csv --exr truth.exr";
 
-struct TruthArguments {
+struct TruthArguments : KeptRun {
   flags::SceneArguments scene;
   flags::ReceiverArguments receivers;
   flags::SourceArguments sources;
@@ -103,8 +100,6 @@ struct TruthArguments {
   bool uv = false;
   std::string total, ke;
   std::string shard;
-  bool resume = false;
-  bool force = false;
   double slow_seconds = 1.0;
   flags::EngineArgument engine;
   int threads = 0;
@@ -117,7 +112,6 @@ struct TruthArguments {
     if (!further.exr.empty()) return Quantity::kRadiance;
     return solution.is_given() ? std::optional(Quantity::kIrradiance) : std::nullopt;
   }
-  [[nodiscard]] jobs::Existing existing() const { return existing_of(resume, force); }
 };
 
 // "sphere" stands for the form factor from a small sphere.
@@ -156,8 +150,7 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const jobs::Team* team) 
   print_warnings(flags::warnings_of_receivers(receivers));
   print_near_misses(job->scene, receivers.receivers);
   request.scene = &job->scene;
-  request.scene_name = args.scene.from_standard_input() ? std::string(flags::kStandardInput)
-                                                        : std::filesystem::path(args.scene.path).filename().string();
+  request.scene_name = args.scene.file_name();
   request.receivers = std::move(receivers.receivers);
   request.receivers_name = std::move(receivers.description);
   job->frame = std::move(receivers.frame);
@@ -199,40 +192,33 @@ void check_totals(const TruthArguments& args) {
 // What a pipe cannot have.
 void check_standard_output(const TruthArguments& args) {
   if (const std::vector<std::string> further = args.further.flags(); !further.empty()) {
-    throw InputError({.what = text::enumerate(further) + (further.size() == 1 ? " is" : " are") + " given with -o -",
-                      .why = "these files are made from the finished truth file",
-                      .suggestion = "name a file, for example -o truth.csv"});
+    text::refuse(text::enumerate(further) + (further.size() == 1 ? " is" : " are") + " given with -o -",
+                 "these files are made from the finished truth file", "name a file, for example -o truth.csv");
   }
   std::vector<std::string> flags;
   if (!args.shard.empty()) flags.emplace_back("--shard");
   if (args.resume) flags.emplace_back("--resume");
   if (args.force) flags.emplace_back("--force");
   if (flags.empty()) return;
-  throw InputError({.what = text::enumerate(flags) + (flags.size() == 1 ? " is" : " are") + " given with -o -",
-                    .why = "standard output has no journal to continue from, no shards to merge and nothing to replace",
-                    .suggestion = "remove " + std::string(flags.size() == 1 ? "it" : "them") + ", or name a file"});
+  text::refuse(text::enumerate(flags) + (flags.size() == 1 ? " is" : " are") + " given with -o -",
+               "standard output has no journal to continue from, no shards to merge and nothing to replace",
+               "remove " + std::string(flags.size() == 1 ? "it" : "them") + ", or name a file");
 }
 
 int write_to_standard_output(const TruthArguments& args) {
   check_totals(args);
   check_standard_output(args);
-  const std::string words = "exactff: interrupted; the printed rows are incomplete, and nothing is kept\n";
-  const InterruptWatch watch(words);
-  Narrator narrator("row");
-  jobs::RowHooks hooks = narrator.hooks(args.slow_seconds);
-  if (::isatty(STDOUT_FILENO) == 1) hooks.progress = {};  // the rows are to be seen
-  truth::Summary summary;
-  try {
+  const auto compute = [&] {
+    Narrator narrator("row");
+    jobs::RowHooks hooks = narrator.hooks(args.slow_seconds);
+    if (::isatty(STDOUT_FILENO) == 1) hooks.progress = {};  // the rows are to be seen
     const std::unique_ptr<Job> job = with_progress([&] { return job_of(args, nullptr); });
     tell_of_sources(*job);
-    summary = truth::write(std::move(job->request), std::cout, hooks);
-  } catch (const Cancelled&) {
+    const truth::Summary summary = truth::write(std::move(job->request), std::cout, hooks);
     narrator.clear();
-    std::cerr << words;
-    return 128 + interrupting_signal();
-  }
-  narrator.clear();
-  return warn_of_uncertified(summary);
+    return warn_of_uncertified(summary);
+  };
+  return unless_interrupted(compute, "exactff: interrupted; the printed rows are incomplete, and nothing is kept\n");
 }
 
 // Before anything that takes time.
@@ -243,30 +229,26 @@ void check_outputs(const TruthArguments& args) {
   if (further.empty()) return;
   if (!args.shard.empty()) {
     const bool numpy = args.further.vtk.empty() && args.further.exr.empty();
-    throw InputError({.what = text::enumerate(further) + (further.size() == 1 ? " is" : " are") + " given with --shard",
-                      .why = "a shard has only a part of the rows",
-                      .suggestion = numpy ? "give " + text::enumerate(further) + " to exactff merge"
-                                          : "after exactff merge, run this command without --shard, with --resume and "
-                                            "-o FILE for the merged file"});
+    text::refuse(text::enumerate(further) + (further.size() == 1 ? " is" : " are") + " given with --shard",
+                 "a shard has only a part of the rows",
+                 numpy ? "give " + text::enumerate(further) + " to exactff merge"
+                       : "after exactff merge, run this command without --shard, with --resume and "
+                         "-o FILE for the merged file");
   }
   check_further_files(args.further, args.existing() != jobs::Existing::kRefuse);
 }
 
 // Returns 0, or the exit code of the signal that interrupted it.
-int write_further_files(const TruthArguments& args, const Job& job, jobs::RowHooks hooks) {
-  const std::string words = "exactff: interrupted; " + text::printable(args.file) +
-                            " is complete; for the other files, run the same command with --resume\n";
-  const InterruptWatch watch(words);
-  try {
+int write_further_files(const TruthArguments& args, const Job& job, const jobs::RowHooks& hooks) {
+  const auto write = [&] {
     if (!args.further.npy.empty()) truth::write_npy(args.file, args.further.npy, hooks);
     if (!args.further.npz.empty()) truth::write_npz(args.file, args.further.npz, hooks);
     if (!args.further.vtk.empty()) truth::write_vtk(job.request, args.file, args.further.vtk, hooks);
     if (!args.further.exr.empty()) truth::write_exr(*job.frame, args.file, args.further.exr, hooks);
     return 0;
-  } catch (const Cancelled&) {
-    std::cerr << words;
-    return 128 + interrupting_signal();
-  }
+  };
+  return unless_interrupted(write, "exactff: interrupted; " + text::printable(args.file) +
+                                       " is complete; for the other files, run the same command with --resume\n");
 }
 
 int write(const TruthArguments& args, jobs::Team* team) {
@@ -300,9 +282,8 @@ int follow(const TruthArguments& args, jobs::Team& team) {
 void refuse_pipes_of_a_team(const TruthArguments& args) {
   const bool scene = args.scene.from_standard_input(), receivers = args.receivers.file == "-";
   if (!scene && !receivers && !args.to_standard_output()) return;
-  throw InputError({.what = std::string("- stands for ") + (scene || receivers ? "standard input" : "standard output"),
-                    .why = "several processes under mpirun cannot share it",
-                    .suggestion = "name a file, or run exactff without mpirun"});
+  text::refuse(std::string("- stands for ") + (scene || receivers ? "standard input" : "standard output"),
+               "several processes under mpirun cannot share it", "name a file, or run exactff without mpirun");
 }
 
 int run(const TruthArguments& args) {
@@ -332,12 +313,10 @@ Command add_truth(CLI::App& app) {
       "--gradient", args->gradient,
       "Add columns: the derivatives of the form factor by the receiver's point (dF_dx, dF_dy, dF_dz, per unit of "
       "length; empty where they do not exist) and their status (certified, zero, underflow, enclosed or kink)");
-  command
-      ->add_option("--measure", args->measures,
+  flags::add_value(*command, "--measure", args->measures, "NAME[,NAME]",
                    "Add a column for each: solid-angle (in sr), overcast (the sky component of a daylight factor, of "
                    "the sky behind the source), sphere (the form factor from a small sphere at the point). All are "
-                   "correctly rounded")
-      ->type_name("NAME[,NAME]");
+                   "correctly rounded");
   flags::add_vector_option(*command, "--up", args->up, "Of --measure overcast: where the zenith is (default: 0 0 1)");
   command->add_flag("--unit-normals", args->unit_normals,
                     "Add columns ux,uy,uz: the normal scaled to length 1, correctly rounded; the values belong to the "
@@ -350,26 +329,21 @@ Command add_truth(CLI::App& app) {
       ->check(CLI::IsMember({"radiance", "radiosity", "irradiance", "form-factor"}));
   command->add_option("--ke", args->ke, "What Ke means in the scene, for totals (default: radiosity)")
       ->check(CLI::IsMember({"radiosity", "radiance"}));
-  command->add_option("--shard", args->shard, "Compute only part I of N, for exactff merge: 1/4 is the first of four")
-      ->type_name("I/N");
-  CLI::Option* resume = command->add_flag("--resume", args->resume, "Continue an interrupted run, if there is one");
-  command->add_flag("--force", args->force, "Start again and replace existing files")->excludes(resume);
-  command->add_option("--slow", args->slow_seconds, "Report every row that takes at least this many seconds")
+  flags::add_value(*command, "--shard", args->shard, "I/N",
+                   "Compute only part I of N, for exactff merge: 1/4 is the first of four");
+  args->add_to(*command, "Start again and replace existing files");
+  flags::add_value(*command, "--slow", args->slow_seconds, "SECONDS",
+                   "Report every row that takes at least this many seconds")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("SECONDS");
+      ->check(CLI::NonNegativeNumber);
   args->engine.add_to(*command);
-  command
-      ->add_option("--threads", args->threads,
+  flags::add_value(*command, "--threads", args->threads, "N",
                    "Number of threads (default: all; under mpirun: this rank's share of the machine)")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
-  command
-      ->add_option("-o,--output", args->file,
-                   "CSV file to write; - writes to standard output, without journal, --resume or shards")
-      ->required()
-      ->type_name("FILE")
-      ->check(flags::is_written(flags::Format::kCsv, flags::Beside::kJournal));
+      ->check(CLI::Range(1, 4096));
+  flags::add_written(*command, "-o,--output", args->file,
+                     "CSV file to write; - writes to standard output, without journal, --resume or shards",
+                     flags::Format::kCsv, flags::Beside::kJournal)
+      ->required();
   args->further.add_numpy_to(*command);
   args->further.add_vtk_to(*command);
   args->further.add_exr_to(*command);
@@ -382,11 +356,10 @@ Command add_truth(CLI::App& app) {
 namespace {
 
 constexpr const char* kMergeFooter =
-    "Shards are the files that `exactff truth` or `exactff matrix` wrote with --shard 1/N to --shard N/N and "
-    "otherwise\n"
-    "the same flags. They can be given in any order. merge stops if a shard is missing, given twice, damaged,\n"
-    "unfinished or from a run with other flags. FILE has the same bytes as the result of one run without shards. It\n"
-    "appears only when it is complete.\n"
+    "Shards are the files that `exactff truth` or `exactff matrix` wrote with --shard 1/N to --shard N/N and\n"
+    "otherwise the same flags. They can be given in any order. merge stops if a shard is missing, given twice,\n"
+    "damaged, unfinished or from a run with other flags. FILE has the same bytes as the result of one run without\n"
+    "shards. It appears only when it is complete.\n"
     "\n"
     "Example:\n"
     "  exactff merge truth.*.csv -o truth.csv";
@@ -405,11 +378,9 @@ int warn_of_wide_entries(const matrix::NamedMatrix& table) {
     wide += std::ranges::count(*entries, false, &ViewFactor::accurate);
   }
   if (wide == 0) return 0;
-  print_warnings(
-      std::vector<Problem>{{.what = text::counted(static_cast<std::uint64_t>(wide), "entry", "entries") +
-                                    (wide == 1 ? " is" : " are") + " wider than the accuracy",
-                            .why = "the column 'limit' tells why; their bounds are as strong as their claims",
-                            .suggestion = "run exactff matrix with --resume and -o for the merged file"}});
+  print_warning(text::counted(static_cast<std::uint64_t>(wide), "entry is", "entries are") + " wider than the accuracy",
+                "the column 'limit' tells why; their bounds are as strong as their claims",
+                "run exactff matrix with --resume and -o for the merged file");
   return kNotAsAsked;
 }
 

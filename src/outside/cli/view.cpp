@@ -161,18 +161,15 @@ void print_csv(const ViewArguments& args, const Scene& scene, const Receiver& re
 }
 
 nlohmann::ordered_json share_json(const ViewArguments& args, const ViewShare& share) {
-  nlohmann::ordered_json json = {
-      {"value", share.value},
-      {"lower", share.lower},
-      {"upper", share.upper},
-      {"status", to_string(share.status)},
-      {"ball", {{"midpoint", share.enclosure.midpoint()}, {"radius", share.enclosure.radius()}}},
-      {"bits", share.precision_bits}};
+  nlohmann::ordered_json json = {{"value", share.value},
+                                 {"lower", share.lower},
+                                 {"upper", share.upper},
+                                 {"status", to_string(share.status)},
+                                 {"ball", ball_json(share.enclosure)},
+                                 {"bits", share.precision_bits}};
   if (args.digits > 0) json["decimals"] = number(args, share);
   return json;
 }
-
-nlohmann::ordered_json numbers(const Vec3& v) { return nlohmann::ordered_json::array({v.x, v.y, v.z}); }
 
 nlohmann::ordered_json regions_json(const Scene& scene, const VisibilityMesh& mesh) {
   auto json = nlohmann::ordered_json::array();
@@ -188,18 +185,8 @@ nlohmann::ordered_json regions_json(const Scene& scene, const VisibilityMesh& me
 
 void print_json(const ViewArguments& args, const Scene& scene, const Receiver& receiver, const Measure& measure,
                 const WholeView& seen, const std::optional<VisibilityMesh>& mesh) {
-  nlohmann::ordered_json json = {
-      {"program", "exactff"},
-      {"version", kVersion},
-      {"scene", args.scene.path},
-      {"scene_hash", scene.hash()},
-      {"receiver", {{"point", numbers(receiver.point)}, {"normal", numbers(receiver.normal)}}}};
-  if (measure.sphere) json["receiver"]["normal"] = nullptr;
+  nlohmann::ordered_json json = question_json(args.scene.path, scene, receiver, measure);
   if (!receiver.on.empty()) json["receiver"]["on"] = scene.name_of(receiver.on);
-  if (!measure.is_form_factor()) {
-    json["measure"] = to_string(measure.kind);
-    if (measure.kind == MeasureKind::kOvercast) json["up"] = numbers(measure.up);
-  }
   json["patches"] = nlohmann::ordered_json::array();
   for (const SeenPatch& patch : seen.patches) {
     nlohmann::ordered_json one = {{"patch", scene.patch(patch.patch).name}};

@@ -134,8 +134,8 @@ matrix::Matrix matrix_in_file(const std::string& file, const Scene& scene, const
                               const std::vector<Selection>& to, ViewFactorOptions& options) {
   matrix::NamedMatrix named = matrix::read_named(file);
   if (named.head.text("scene_hash") != scene.hash()) {
-    text::refuse(std::filesystem::path(named.file), "holds the view factors of another scene",
-                 "its head has another hash", "give the same scene, with the same --divide, --two-sided and --patches");
+    text::refuse(named.file, "holds the view factors of another scene", "its head has another hash",
+                 "give the same scene, with the same --divide, --two-sided and --patches");
   }
   options = matrix::options_of(named.head);
   const matrix::Options as_there{.factors = options, .backs = !named.back.empty(), .open = !named.open.empty()};

@@ -94,6 +94,7 @@ constexpr std::array<TextFlag, 6> kLists = {
       "Where rays end: jittered, centre, regular, low-discrepancy (default: all)"},
      {"--variant", &Arguments::variant, "LIST",
       "literal: the algorithm as printed in 1992; mended: with its faults corrected (default: both)"}}};
+
 void refuse_idle(const std::vector<std::string>& flags, const std::string& beside, const std::string& why,
                  const std::string& suggestion) {
   if (flags.empty()) return;
@@ -165,12 +166,9 @@ std::optional<render::Camera> camera_of(const CameraArguments& args, const Scene
 constexpr int kAbridgedGrid = 12;
 
 std::string abridged_grid(const std::string& grid) {
-  const std::size_t cross = grid.find('x');
-  const auto u = flags::whole_number<int>(std::string_view(grid).substr(0, cross));
-  const auto v =
-      cross == std::string::npos ? std::nullopt : flags::whole_number<int>(std::string_view(grid).substr(cross + 1));
-  if (!u || !v) return grid;  // refused later
-  return fmt::format("{}x{}", std::min(*u, kAbridgedGrid), std::min(*v, kAbridgedGrid));
+  const auto cells = numbers_across(grid);
+  if (!cells) return grid;  // refused later
+  return fmt::format("{}x{}", std::min(cells->first, kAbridgedGrid), std::min(cells->second, kAbridgedGrid));
 }
 
 // Reduces settings that the user did not give.
@@ -223,14 +221,11 @@ void ComparisonArguments::add_to(CLI::App& app) {
   scene.add_to(app);
   add_receiver_options(app, receivers);
   add_source_options(app, sources);
-  const auto add = [&](const TextFlag& flag) {
-    app.add_option(flag.name, this->*flag.text, flag.help)->type_name(flag.type);
-  };
+  const auto add = [&](const TextFlag& flag) { add_value(app, flag.name, this->*flag.text, flag.type, flag.help); };
   std::ranges::for_each(kLists, add);
   CLI::Option* method =
-      app.add_option("--method", methods,
-                     "A method to compare with the exact values; can be repeated (default: all, and the sweep)")
-          ->type_name("METHOD")
+      add_value(app, "--method", methods, "METHOD",
+                "A method to compare with the exact values; can be repeated (default: all, and the sweep)")
           ->take_all();
   app.add_flag("--no-methods", no_methods,
                "Run only the exact method and the sweep of the ray-sampled adaptive algorithm")
@@ -238,27 +233,23 @@ void ComparisonArguments::add_to(CLI::App& app) {
   app.add_flag("--sweep", sweep,
                "Also run the ray-sampled adaptive algorithm over --eps-b, --eps-a, --rays, --seeds, --pattern and "
                "--variant, as is done if no --method is given");
-  app.add_option("--method-seeds", method_seeds, "Run stochastic methods with seeds 1 to N (default: 30)")
-      ->type_name("N")
+  add_value(app, "--method-seeds", method_seeds, "N", "Run stochastic methods with seeds 1 to N (default: 30)")
       ->check(CLI::Range(1, 10000));
-  app.add_option("--method-receivers", method_receivers,
-                 "Number of receivers at which methods are compared (default: 48)")
-      ->type_name("N")
+  add_value(app, "--method-receivers", method_receivers, "N",
+            "Number of receivers at which methods are compared (default: 48)")
       ->check(CLI::Range(1, 100000));
-  app.add_option("--method-budget", method_budget,
-                 "Time limit for each method on a scene. The time is estimated from counted work at fixed prices, so "
-                 "that the settings that run do not depend on the machine (default: 2)")
-      ->type_name("SECONDS")
+  add_value(app, "--method-budget", method_budget, "SECONDS",
+            "Time limit for each method on a scene. The time is estimated from counted work at fixed prices, so "
+            "that the settings that run do not depend on the machine (default: 2)")
       ->check(is_not_negative);
-  app.add_option("--sweep-budget", sweep_budget,
-                 "The same limit for all settings of the adaptive algorithm together (default: 25)")
-      ->type_name("SECONDS")
+  add_value(app, "--sweep-budget", sweep_budget, "SECONDS",
+            "The same limit for all settings of the adaptive algorithm together (default: 25)")
       ->check(is_not_negative);
   engine.add_to(app);
   camera.add_to(app, "Pictures in the report: where the camera stands (default: where it shows the whole scene)",
                 "The point that it looks at");
   app.get_option("--fov")->needs(app.get_option("--eye"));
-  app.add_option("--title", title, "Name of the scene in the report")->type_name("TEXT");
+  add_value(app, "--title", title, "TEXT", "Name of the scene in the report");
   app.add_flag("--unless-abridged", unless_abridged, "Leave this scene out of abridged reports");
 }
 

@@ -66,8 +66,7 @@ void SceneArguments::add_to(CLI::App& app) {
                  "@MODEL[:SETTING=VALUE,...] for a generated scene: `exactff info @` lists them")
       ->required()
       ->check(is_read());
-  app.add_option("--unit", unit, "Unit of length of files that do not state theirs: mm, cm, m, in or ft")
-      ->type_name("UNIT")
+  add_value(app, "--unit", unit, "UNIT", "Unit of length of files that do not state theirs: mm, cm, m, in or ft")
       ->check(CLI::IsMember({"mm", "cm", "m", "in", "ft"}));
   app.add_option(
          "--patches", patches,
@@ -76,13 +75,12 @@ void SceneArguments::add_to(CLI::App& app) {
          "smooth[:DEGREES] (connected faces that bend by less; default 30) or parts (connected faces)")
       ->check(CLI::Validator(not_a_way, "{groups,faces,planes,smooth,parts}"))
       ->capture_default_str();
-  app.add_option("--name", names,
-                 "NAME=SELECTOR: a name for faces. SELECTOR is box:X0,Y0,Z0,X1,Y1,Z1 (faces inside), "
-                 "normal:X,Y,Z[:DEGREES] (fronts within 5 degrees), plane:A,B,C,D[:DISTANCE] (on A x + B y + C z = D), "
-                 "PATCH:1-20,25 or PATCH, or several of them with ' & ' between; can be repeated")
-      ->type_name("NAME=SELECTOR")
+  add_value(app, "--name", names, "NAME=SELECTOR",
+            "NAME=SELECTOR: a name for faces. SELECTOR is box:X0,Y0,Z0,X1,Y1,Z1 (faces inside), "
+            "normal:X,Y,Z[:DEGREES] (fronts within 5 degrees), plane:A,B,C,D[:DISTANCE] (on A x + B y + C z = D), "
+            "PATCH:1-20,25 or PATCH, or several of them with ' & ' between; can be repeated")
       ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->take_all();
   add_read(app, "--names", names_file, "File with NAME=SELECTOR on each line, read before --name");
   app.add_flag("--skip-bad-faces", skip_bad_faces, "Leave out unusable faces with a warning instead of stopping");
   add_names(app, "--flip", flip, "Turn this patch or face round, or all: its front becomes its back");
@@ -91,11 +89,10 @@ void SceneArguments::add_to(CLI::App& app) {
 }
 
 void SceneArguments::add_divide_to(CLI::App& app) {
-  app.add_option("--divide", divide,
-                 "Cut the faces into cells with sides of at most this length, each a patch NAME:k; NAME means all of "
-                 "them. A cell that is not exactly planar becomes two triangles, whose common side may be longer. In "
-                 "--flip and --transparent, NAME:k is a face of the scene that is cut")
-      ->type_name("LENGTH")
+  add_value(app, "--divide", divide, "LENGTH",
+            "Cut the faces into cells with sides of at most this length, each a patch NAME:k; NAME means all of "
+            "them. A cell that is not exactly planar becomes two triangles, whose common side may be longer. In "
+            "--flip and --transparent, NAME:k is a face of the scene that is cut")
       ->check(is_positive);
 }
 
@@ -183,11 +180,10 @@ void CameraArguments::add_to(CLI::App& app, const std::string& eye_meaning, cons
   add_vector_option(app, "--up", up,
                     "The direction that points upwards in the picture (default: 0 0 1 if more area of fronts looks "
                     "along +z than along +y; else 0 1 0)");
-  app.add_option("--fov", fov,
-                 fmt::format("Vertical angle of view in degrees (default: {}; {} where the program places a camera "
-                             "inside a closed room)",
-                             text::shortest(render::Camera{}.fov), text::shortest(render::kWideFov)))
-      ->type_name("DEGREES")
+  add_value(app, "--fov", fov, "DEGREES",
+            fmt::format("Vertical angle of view in degrees (default: {}; {} where the program places a camera "
+                        "inside a closed room)",
+                        text::shortest(render::Camera{}.fov), text::shortest(render::kWideFov)))
       ->check(is_positive);
 }
 
@@ -208,12 +204,10 @@ render::CameraWishes CameraArguments::wishes() const {
 }
 
 void MeasureArgument::add_to(CLI::App& app) {
-  app.add_option(
-         "--measure", name,
-         "form-factor; solid-angle: in sr, of what lies above the horizon; overcast: what the receiver gets of "
-         "the CIE overcast sky behind the source, over what open ground gets of all of it: the sky component of "
-         "a daylight factor. Below the horizon of --up (default: 0 0 1) there is no sky")
-      ->type_name("NAME")
+  add_value(app, "--measure", name, "NAME",
+            "form-factor; solid-angle: in sr, of what lies above the horizon; overcast: what the receiver gets of "
+            "the CIE overcast sky behind the source, over what open ground gets of all of it: the sky component of "
+            "a daylight factor. Below the horizon of --up (default: 0 0 1) there is no sky")
       ->capture_default_str()
       ->check(CLI::IsMember({"form-factor", "solid-angle", "overcast"}));
 }
@@ -269,16 +263,10 @@ void check_file_alone(const ReceiverArguments& args) {
                "receivers come either from the file or from a patch", "remove one of them");
 }
 
-int to_cells(std::string_view text, const std::string& grid) {
-  if (const auto count = whole_number<int>(text)) return *count;
-  text::refuse("--grid: " + text::in_quotes(grid) + " is not a grid", "a grid is two whole numbers",
-               "write columns x rows: --grid 32x32");
-}
-
 GridSize grid_of(const std::string& text) {
-  const std::string_view view = text;
-  const std::size_t cross = std::min(view.find('x'), view.size());
-  return {to_cells(view.substr(0, cross), text), to_cells(view.substr(std::min(cross + 1, view.size())), text)};
+  if (const auto cells = numbers_across(text)) return {cells->first, cells->second};
+  text::refuse("--grid: " + text::in_quotes(text) + " is not a grid", "a grid is two whole numbers",
+               "write columns x rows: --grid 32x32");
 }
 
 std::uint64_t to_count(const std::string& text, const std::string& flag, const std::string& why,
@@ -406,8 +394,7 @@ bool are_pixels(const ReceiverArguments& args) {
 }
 
 std::optional<AutoFace> auto_face(const std::string& on, const Scene& scene) {
-  if (!is_auto(on) || std::ranges::find(scene.patches(), on, &Patch::name) != scene.patches().end())
-    return std::nullopt;
+  if (!is_auto(on) || has_patch(scene, on)) return std::nullopt;
   if (on == "auto") return AutoFace{};
   const text::ParsedNumber distance = text::parse_number(on.substr(std::string_view("auto:").size()));
   if (distance.fault == text::NumberFault::kNone && distance.value > 0.0) return AutoFace{distance.value};
@@ -418,24 +405,21 @@ std::optional<AutoFace> auto_face(const std::string& on, const Scene& scene) {
 void add_receiver_options(CLI::App& app, ReceiverArguments& args) {
   add_names(app, "--on", args.on, "Patch or face on which the receivers lie",
             "; all: every patch; with --receivers: auto or auto:DISTANCE finds the face of each receiver");
-  app.add_option("--grid", args.grid,
-                 "A receiver in the centre of each cell of a grid on each surface: columns x rows, such as 32x32")
-      ->type_name("UxV");
+  add_value(app, "--grid", args.grid, "UxV",
+            "A receiver in the centre of each cell of a grid on each surface: columns x rows, such as 32x32");
   app.add_flag("--vertices", args.vertices, "A receiver at each vertex of each face, with that face's normal");
   app.add_flag("--centres", args.centres, "A receiver at the centre of each surface");
   app.add_flag("--per-face", args.per_face,
                "With --grid or --centres: treat each face by itself, instead of joining neighbours in one plane");
-  app.add_option("--samples", args.samples, "N receivers at random, uniformly by area")->type_name("N");
-  app.add_option("--sample-seed", args.sample_seed, "Seed of --samples; it does not affect rays (default: 1)")
-      ->type_name("S");
+  add_value(app, "--samples", args.samples, "N", "N receivers at random, uniformly by area");
+  add_value(app, "--sample-seed", args.sample_seed, "S", "Seed of --samples; it does not affect rays (default: 1)");
   add_read(app, "--receivers", args.file,
            "CSV file with the columns id,x,y,z,nx,ny,nz,on, or a truth file, instead of --on; - for standard input; or "
            "an EXR file with the visible point and normal of each pixel");
-  app.add_option("--position-layer", args.layers.position,
-                 "Layer of the points in an EXR file, in world coordinates (default: position or P)")
-      ->type_name("LAYER");
-  app.add_option("--normal-layer", args.layers.normal, "Layer of the normals in an EXR file (default: normal or N)")
-      ->type_name("LAYER");
+  add_value(app, "--position-layer", args.layers.position, "LAYER",
+            "Layer of the points in an EXR file, in world coordinates (default: position or P)");
+  add_value(app, "--normal-layer", args.layers.normal, "LAYER",
+            "Layer of the normals in an EXR file (default: normal or N)");
 }
 
 void check_receiver_options(const ReceiverArguments& args) {
@@ -526,9 +510,8 @@ std::vector<Selection> sources_of(const SourceArguments& args, const Scene& scen
   std::set<std::pair<PatchId, std::optional<FaceId>>> named;
   for (const Selection& source : sources) {
     if (named.emplace(source.patch, source.face).second) continue;
-    throw InputError({.what = "--source: '" + scene.name_of(source) + "' is named twice",
-                      .why = "its light would count twice",
-                      .suggestion = "give it once"});
+    text::refuse("--source: '" + scene.name_of(source) + "' is named twice", "its light would count twice",
+                 "give it once");
   }
   return sources;
 }

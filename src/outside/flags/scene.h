@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,6 +37,9 @@ struct SceneArguments {
   void add_to(CLI::App& app);
   void add_divide_to(CLI::App& app);  // --divide LENGTH
   [[nodiscard]] bool from_standard_input() const { return path == "-"; }
+  [[nodiscard]] std::string file_name() const {  // without its folder
+    return from_standard_input() ? kStandardInput : std::filesystem::path(path).filename().string();
+  }
 
   [[nodiscard]] SceneOptions options() const;
   // Reads or generates the scene, names faces, changes it as --flip and --transparent say, and divides it, with a note

@@ -82,6 +82,13 @@ std::vector<std::string> split_list(const std::string& text) {
   return parts;
 }
 
+std::optional<std::pair<int, int>> numbers_across(std::string_view text) {
+  const std::size_t cross = std::min(text.find('x'), text.size());
+  const auto first = whole_number<int>(text.substr(0, cross));
+  const auto second = whole_number<int>(text.substr(std::min(cross + 1, text.size())));
+  return first && second ? std::optional(std::pair(*first, *second)) : std::nullopt;
+}
+
 std::string is_positive(const std::string& text) {
   const text::ParsedNumber number = text::parse_number(text);
   return number.fault == text::NumberFault::kNone && number.value > 0.0 ? ""
@@ -130,16 +137,12 @@ bool names_all(const Scene& scene, const std::vector<std::string>& texts) {
 
 void add_names(CLI::App& app, const std::string& flag, std::vector<std::string>& names, const std::string& meaning,
                const std::string& more) {
-  app.add_option(flag, names, meaning + kNamesHelp + more)
-      ->type_name("NAME[:K]")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_value(app, flag, names, "NAME[:K]", meaning + kNamesHelp + more)->expected(1)->take_all();
 }
 
 void add_threads(CLI::App& app, int& threads) {
-  app.add_option("--threads", threads, "Number of threads (default: all); it does not affect the values")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
+  add_value(app, "--threads", threads, "N", "Number of threads (default: all); it does not affect the values")
+      ->check(CLI::Range(1, 4096));
 }
 
 std::string command_words(const CLI::App& command, const std::vector<std::string>& left_out) {
@@ -159,7 +162,7 @@ std::string command_words(const CLI::App& command, const std::vector<std::string
 
 CLI::Option* add_vector_option(CLI::App& app, const std::string& flag, ThreeNumbers& numbers,
                                const std::string& meaning, const std::string& type) {
-  return app.add_option(flag, numbers, meaning)->type_name(type)->check(is_no_flag);
+  return add_value(app, flag, numbers, type, meaning)->check(is_no_flag);
 }
 
 Vec3 vector_of(const ThreeNumbers& numbers, const std::string& flag) {

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "exactff/geometry.h"
@@ -27,6 +28,8 @@ std::optional<Whole> whole_number(std::string_view text) {
   if (text.empty() || end.ec != std::errc{} || end.ptr != text.data() + text.size()) return std::nullopt;
   return value;
 }
+// "32x16". Nothing for any other text.
+[[nodiscard]] std::optional<std::pair<int, int>> numbers_across(std::string_view text);
 
 // A check of a flag's value.
 [[nodiscard]] std::string is_positive(const std::string& text);
@@ -105,15 +108,22 @@ enum class Beside {
 [[nodiscard]] CLI::Validator is_written(Format format, Beside beside = Beside::kNothing);
 [[nodiscard]] CLI::Validator is_written_folder();  // with a journal FOLDER.part
 
+// An option whose value the help calls `type`: "LENGTH".
+template <class Target>
+CLI::Option* add_value(CLI::App& app, const std::string& flag, Target& value, const std::string& type,
+                       const std::string& meaning) {
+  return app.add_option(flag, value, meaning)->type_name(type);
+}
+
 // Options whose value is FILE, with their mark.
 template <class Target>
 CLI::Option* add_read(CLI::App& app, const std::string& flag, Target& file, const std::string& meaning) {
-  return app.add_option(flag, file, meaning)->type_name("FILE")->check(is_read());
+  return add_value(app, flag, file, "FILE", meaning)->check(is_read());
 }
 template <class Target>
 CLI::Option* add_written(CLI::App& app, const std::string& flag, Target& file, const std::string& meaning,
                          Format format, Beside beside = Beside::kNothing) {
-  return app.add_option(flag, file, meaning)->type_name("FILE")->check(is_written(format, beside));
+  return add_value(app, flag, file, "FILE", meaning)->check(is_written(format, beside));
 }
 
 struct FileMark {

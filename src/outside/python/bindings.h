@@ -32,6 +32,7 @@ PYBIND11_MAKE_OPAQUE(std::vector<exactff::Receiver>)
 namespace exactff::python {
 
 namespace py = pybind11;
+using py::literals::operator""_a;
 
 using Numbers = py::array_t<double>;
 using Integers = py::array_t<std::int64_t>;
@@ -60,6 +61,18 @@ void write_whole_files(const std::vector<std::pair<std::filesystem::path, std::s
 [[nodiscard]] py::tuple to_tuple(const Problem& problem);
 [[nodiscard]] py::tuple to_tuple(const Vec3& v);
 [[nodiscard]] py::tuple to_tuple(const Rgb& colour);
+
+// An array (n, 3): of each element the vector that `get` finds.
+template <class Elements, class Get>
+Numbers rows_of(const Elements& elements, const Get& get) {
+  Numbers result({static_cast<py::ssize_t>(elements.size()), py::ssize_t{3}});
+  double* out = result.mutable_data();
+  for (const auto& element : elements) {
+    const Vec3& v = get(element);
+    for (const double coordinate : {v.x, v.y, v.z}) *out++ = coordinate;
+  }
+  return result;
+}
 
 // Receivers in arrays: points and normals (n, 3), own faces (n, k), where -1 stands for none. Their `get` needs no GIL;
 // the arrays must outlive this object.

@@ -8,29 +8,10 @@
 #include "files/file.h"
 #include "flags/values.h"
 #include "python/bindings.h"
+#include "text/refuse.h"
 
 namespace exactff::python {
 namespace {
-
-struct Limits {
-  std::optional<double> max_abs, max_rel, rms, eps_b;
-  std::vector<std::pair<double, double>> quantiles;
-  bool per_source = false;
-  double relative_floor = 0.0;
-  std::size_t worst = 10;
-};
-
-check::Criteria criteria_of(const Limits& limits) {
-  check::Criteria criteria{.max_abs = limits.max_abs,
-                           .max_rel = limits.max_rel,
-                           .rms = limits.rms,
-                           .eps_b = limits.eps_b,
-                           .per_source = limits.per_source,
-                           .relative_floor = limits.relative_floor,
-                           .worst = limits.worst};
-  for (const auto& [share, limit] : limits.quantiles) criteria.quantiles.push_back({share, limit});
-  return criteria;
-}
 
 py::tuple distribution(const check::Distribution& d) {
   return py::make_tuple(d.median, d.p90, d.p99, d.p999, d.max, d.rms);
@@ -97,8 +78,8 @@ struct Matching {
   double tolerance = 0.0;
 };
 
-check::Options options_of(const Matching& matching, const Limits& limits) {
-  check::Options options{.truth_column = matching.truth_column, .criteria = criteria_of(limits)};
+check::Options options_of(const Matching& matching, const check::Criteria& limits) {
+  check::Options options{.truth_column = matching.truth_column, .criteria = limits};
   options.columns.value = matching.value_column;
   options.match.by = matching.by_position ? check::MatchBy::kPosition : check::MatchBy::kReceiver;
   options.match.tolerance = matching.tolerance;
@@ -107,7 +88,7 @@ check::Options options_of(const Matching& matching, const Limits& limits) {
 }
 
 py::tuple check_files(const std::filesystem::path& truth, const std::filesystem::path& candidate,
-                      const Matching& matching, const Limits& limits, const CheckFiles& files) {
+                      const Matching& matching, const check::Criteria& limits, const CheckFiles& files) {
   require_apart(files, {{"truth", truth}, {"values", candidate}});
   check::Report report = [&] {
     const py::gil_scoped_release released;
@@ -118,7 +99,8 @@ py::tuple check_files(const std::filesystem::path& truth, const std::filesystem:
 
 // The table in Markdown, and of each program its name, the seconds and the report.
 py::tuple scoreboard(const std::filesystem::path& truth, const std::vector<std::filesystem::path>& candidates,
-                     const Matching& matching, const Limits& limits, const std::vector<std::optional<double>>& seconds,
+                     const Matching& matching, const check::Criteria& limits,
+                     const std::vector<std::optional<double>>& seconds,
                      const std::optional<std::filesystem::path>& folder) {
   check::Scoreboard board;
   {
@@ -134,28 +116,28 @@ py::tuple scoreboard(const std::filesystem::path& truth, const std::vector<std::
   return py::make_tuple(shown(check::markdown(board)), programs);
 }
 
-check::Report judged(const check::Truth& truth, const Numbers& values, const Limits& limits) {
+check::Report judged(const check::Truth& truth, const Numbers& values, const check::Criteria& limits) {
   const std::span<const double> list(values.data(), static_cast<std::size_t>(values.size()));
   const py::gil_scoped_release released;
-  check::Report report = judge(truth, list, criteria_of(limits));
+  check::Report report = judge(truth, list, limits);
   report.candidate_file = "values";
   return report;
 }
 
 // Values for the rows of a truth file, in their order.
 py::tuple check_values(const std::filesystem::path& truth_file, const Numbers& values, const std::string& truth_column,
-                       const Limits& limits, const CheckFiles& files) {
+                       const check::Criteria& limits, const CheckFiles& files) {
   require_apart(files, {{"truth", truth_file}});
   const check::Truth truth = [&] {
     const py::gil_scoped_release released;
     return check::read_truth(truth_file, truth_column);
   }();
   if (truth.rows.size() != static_cast<std::size_t>(values.size())) {
-    throw InputError({.file = truth_file.string(),
-                      .what = "has " + std::to_string(truth.rows.size()) + " rows, and there are " +
-                              std::to_string(values.size()) + " values",
-                      .why = "the values are compared with the rows in their order",
-                      .suggestion = "give one value for each row, or a file whose rows are matched by receiver"});
+    text::refuse(truth_file,
+                 "has " + std::to_string(truth.rows.size()) + " rows, and there are " + std::to_string(values.size()) +
+                     " values",
+                 "the values are compared with the rows in their order",
+                 "give one value for each row, or a file whose rows are matched by receiver");
   }
   return result_of(judged(truth, values, limits), files);
 }
@@ -163,7 +145,7 @@ py::tuple check_values(const std::filesystem::path& truth_file, const Numbers& v
 // True values and their bounds in arrays (receivers, sources). Without names, receivers have their index.
 py::tuple check_arrays(const Numbers& exact, const Numbers& lower, const Numbers& upper,
                        const py::array_t<std::int8_t>& status, const std::vector<std::string>& receivers,
-                       const std::vector<std::string>& sources, const Numbers& values, const Limits& limits,
+                       const std::vector<std::string>& sources, const Numbers& values, const check::Criteria& limits,
                        const CheckFiles& files) {
   require_apart(files, {});
   const auto f = exact.unchecked<2>(), low = lower.unchecked<2>(), high = upper.unchecked<2>();
@@ -190,16 +172,20 @@ py::tuple check_arrays(const Numbers& exact, const Numbers& lower, const Numbers
 }  // namespace
 
 void bind_check(py::module_& module) {
-  py::class_<Limits>(module, "Limits")
+  using check::Criteria;
+  py::class_<Criteria>(module, "Limits")
       .def(py::init<>())
-      .def_readwrite("max_abs", &Limits::max_abs)
-      .def_readwrite("max_rel", &Limits::max_rel)
-      .def_readwrite("rms", &Limits::rms)
-      .def_readwrite("eps_b", &Limits::eps_b)
-      .def_readwrite("quantiles", &Limits::quantiles)
-      .def_readwrite("per_source", &Limits::per_source)
-      .def_readwrite("relative_floor", &Limits::relative_floor)
-      .def_readwrite("worst", &Limits::worst);
+      .def_readwrite("max_abs", &Criteria::max_abs)
+      .def_readwrite("max_rel", &Criteria::max_rel)
+      .def_readwrite("rms", &Criteria::rms)
+      .def_readwrite("eps_b", &Criteria::eps_b)
+      .def_property("quantiles", nullptr,
+                    [](Criteria& limits, const std::vector<std::pair<double, double>>& all) {
+                      for (const auto& [share, limit] : all) limits.quantiles.push_back({share, limit});
+                    })
+      .def_readwrite("per_source", &Criteria::per_source)
+      .def_readwrite("relative_floor", &Criteria::relative_floor)
+      .def_readwrite("worst", &Criteria::worst);
   py::class_<CheckFiles>(module, "CheckFiles")
       .def(py::init<>())
       .def_readwrite("baseline", &CheckFiles::baseline)
@@ -213,17 +199,14 @@ void bind_check(py::module_& module) {
       .def_readwrite("by_position", &Matching::by_position)
       .def_readwrite("partial", &Matching::partial)
       .def_readwrite("tolerance", &Matching::tolerance);
-  module.def("check_files", &check_files, py::arg("truth"), py::arg("candidate"), py::arg("matching"),
-             py::arg("limits"), py::arg("files"));
-  module.def("scoreboard", &scoreboard, py::arg("truth"), py::arg("candidates"), py::arg("matching"), py::arg("limits"),
-             py::arg("seconds"), py::arg("folder"));
+  module.def("check_files", &check_files, "truth"_a, "candidate"_a, "matching"_a, "limits"_a, "files"_a);
+  module.def("scoreboard", &scoreboard, "truth"_a, "candidates"_a, "matching"_a, "limits"_a, "seconds"_a, "folder"_a);
   module.def(
       "program_names", [](const std::vector<std::filesystem::path>& files) { return check::program_names(files); },
-      py::arg("candidates"));
-  module.def("check_values", &check_values, py::arg("truth"), py::arg("values"), py::arg("truth_column"),
-             py::arg("limits"), py::arg("files"));
-  module.def("check_arrays", &check_arrays, py::arg("exact"), py::arg("lower"), py::arg("upper"), py::arg("status"),
-             py::arg("receivers"), py::arg("sources"), py::arg("values"), py::arg("limits"), py::arg("files"));
+      "candidates"_a);
+  module.def("check_values", &check_values, "truth"_a, "values"_a, "truth_column"_a, "limits"_a, "files"_a);
+  module.def("check_arrays", &check_arrays, "exact"_a, "lower"_a, "upper"_a, "status"_a, "receivers"_a, "sources"_a,
+             "values"_a, "limits"_a, "files"_a);
 }
 
 // --- truth files, as `exactff truth` writes them ---
@@ -269,9 +252,8 @@ py::tuple write_rows(const SharedScene& scene, const std::string& scene_name, co
 }  // namespace
 
 void bind_truth(py::module_& module) {
-  module.def("write_truth", &write_rows, py::arg("scene"), py::arg("scene_name"), py::arg("receivers"),
-             py::arg("receivers_name"), py::arg("sources"), py::arg("file"), py::arg("existing"), py::arg("columns"),
-             py::arg("measures"), py::arg("threads"), py::arg("progress"));
+  module.def("write_truth", &write_rows, "scene"_a, "scene_name"_a, "receivers"_a, "receivers_name"_a, "sources"_a,
+             "file"_a, "existing"_a, "columns"_a, "measures"_a, "threads"_a, "progress"_a);
 }
 
 }  // namespace exactff::python

@@ -2,6 +2,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "exactff/methods.h"
 #include "exactff/receiver.h"
@@ -10,6 +11,7 @@
 #include "kernel/poll.h"
 #include "python/bindings.h"
 #include "report/pictures.h"
+#include "scene/selections.h"
 #include "truth/unit_normal.h"
 
 namespace exactff::python {
@@ -23,18 +25,18 @@ namespace {
 
 void bind_enclosure(py::module_& module) {
   py::class_<Enclosure>(module, "Enclosure")
-      .def_static("of", &Enclosure::of, py::arg("value"))
+      .def_static("of", &Enclosure::of, "value"_a)
       .def_property_readonly("midpoint", &Enclosure::midpoint)
       .def_property_readonly("radius", &Enclosure::radius)
       .def_property_readonly("lower", &Enclosure::lower)
       .def_property_readonly("upper", &Enclosure::upper)
       .def_property_readonly("nearest", &Enclosure::nearest)
-      .def("decimals", &Enclosure::decimals, py::arg("digits"))
-      .def("contains", py::overload_cast<double>(&Enclosure::contains, py::const_), py::arg("value"))
+      .def("decimals", &Enclosure::decimals, "digits"_a)
+      .def("contains", py::overload_cast<double>(&Enclosure::contains, py::const_), "value"_a)
       .def(
-          "plus", [](Enclosure a, const Enclosure& b) { return a += b; }, py::arg("other"))
+          "plus", [](Enclosure a, const Enclosure& b) { return a += b; }, "other"_a)
       .def(
-          "minus", [](Enclosure a, const Enclosure& b) { return a -= b; }, py::arg("other"));
+          "minus", [](Enclosure a, const Enclosure& b) { return a -= b; }, "other"_a);
 }
 
 // --- arrays ---
@@ -95,7 +97,7 @@ class Tables {
 // The column of "sky", unless a patch has this name. Taken out of the names.
 std::optional<std::size_t> take_sky(const Scene& scene, std::vector<std::string>& names) {
   const auto sky = std::ranges::find(names, "sky");
-  if (sky == names.end() || std::ranges::find(scene.patches(), "sky", &Patch::name) != scene.patches().end()) return {};
+  if (sky == names.end() || has_patch(scene, "sky")) return {};
   const auto column = static_cast<std::size_t>(sky - names.begin());
   names.erase(sky);
   return column;
@@ -262,14 +264,13 @@ void bind_pair(py::module_& module) {
 void bind_form_factors(py::module_& module) {
   bind_enclosure(module);
   bind_pair(module);
-  module.def("form_factors", &form_factors_of, py::arg("scene"), py::arg("points"), py::arg("normals"), py::arg("on"),
-             py::arg("sources"), py::arg("full"), py::arg("fraction"), py::arg("gradient"), py::arg("precision_cap"),
-             py::arg("threads"), py::arg("progress"), py::arg("measure"));
-  module.def("form_factor", &pair_of, py::arg("scene"), py::arg("point"), py::arg("normal"), py::arg("on"),
-             py::arg("source"), py::arg("fraction"), py::arg("list_cutters"), py::arg("gradient"), py::arg("vertices"),
-             py::arg("digits"), py::arg("precision_cap"), py::arg("only_occluders"), py::arg("measure"));
+  module.def("form_factors", &form_factors_of, "scene"_a, "points"_a, "normals"_a, "on"_a, "sources"_a, "full"_a,
+             "fraction"_a, "gradient"_a, "precision_cap"_a, "threads"_a, "progress"_a, "measure"_a);
+  module.def("form_factor", &pair_of, "scene"_a, "point"_a, "normal"_a, "on"_a, "source"_a, "fraction"_a,
+             "list_cutters"_a, "gradient"_a, "vertices"_a, "digits"_a, "precision_cap"_a, "only_occluders"_a,
+             "measure"_a);
   module.def(
-      "status_name", [](int status) { return std::string(to_string(static_cast<Status>(status))); }, py::arg("status"));
+      "status_name", [](int status) { return std::string(to_string(static_cast<Status>(status))); }, "status"_a);
 }
 
 // --- every method behind one interface ---
@@ -312,12 +313,11 @@ std::vector<std::string> method_names() {
 void bind_methods(py::module_& module) {
   module.def("method_names", &method_names);
   module.def(
-      "method_description", [](const std::string& name) { return description(methods::method_named(name)); },
-      py::arg("name"));
+      "method_description", [](const std::string& name) { return description(methods::method_named(name)); }, "name"_a);
   module.def(
-      "method_text", [](const std::string& text) { return methods::parse(text).text(); }, py::arg("text"));
-  module.def("estimates", &estimates, py::arg("method"), py::arg("scene"), py::arg("points"), py::arg("normals"),
-             py::arg("on"), py::arg("sources"), py::arg("threads"), py::arg("progress"));
+      "method_text", [](const std::string& text) { return methods::parse(text).text(); }, "text"_a);
+  module.def("estimates", &estimates, "method"_a, "scene"_a, "points"_a, "normals"_a, "on"_a, "sources"_a, "threads"_a,
+             "progress"_a);
 }
 
 // --- receivers ---
@@ -345,22 +345,9 @@ namespace {
 
 using List = std::vector<Receiver>;
 
-Numbers rows_of(const List& list, Vec3 Receiver::*field) {
-  Numbers result({static_cast<py::ssize_t>(list.size()), py::ssize_t{3}});
-  double* out = result.mutable_data();
-  for (const Receiver& receiver : list) {
-    *out++ = (receiver.*field).x;
-    *out++ = (receiver.*field).y;
-    *out++ = (receiver.*field).z;
-  }
-  return result;
-}
-
 Numbers unit_normals_of(const List& list) {
-  List unit(list.size());
   truth::UnitNormal last;
-  for (std::size_t i = 0; i < list.size(); ++i) unit[i].normal = last.of(list[i].normal);
-  return rows_of(unit, &Receiver::normal);
+  return rows_of(list, [&](const Receiver& receiver) { return last.of(receiver.normal); });
 }
 
 // Lists of faces as rows of equal length, which end with -1.
@@ -460,15 +447,14 @@ py::tuple of_lightmap(const SharedScene& scene, int width, int height, int set, 
 
 void bind_receivers(py::module_& module) {
   py::class_<List, std::shared_ptr<List>>(module, "ReceiverList", py::module_local())
-      .def_static("on_faces", &make_on, py::arg("scene"), py::arg("names"), py::arg("grid"), py::arg("vertices"),
-                  py::arg("centres"), py::arg("samples"), py::arg("seed"), py::arg("per_face"))
-      .def_static("from_arrays", &from_arrays, py::arg("points"), py::arg("normals"), py::arg("on"), py::arg("ids"))
-      .def_static("read", &read_csv, py::arg("scene"), py::arg("path"))
-      .def_static("of_lightmap", &of_lightmap, py::arg("scene"), py::arg("width"), py::arg("height"), py::arg("set"),
-                  py::arg("names"), py::arg("all"))
+      .def_static("on_faces", &make_on, "scene"_a, "names"_a, "grid"_a, "vertices"_a, "centres"_a, "samples"_a,
+                  "seed"_a, "per_face"_a)
+      .def_static("from_arrays", &from_arrays, "points"_a, "normals"_a, "on"_a, "ids"_a)
+      .def_static("read", &read_csv, "scene"_a, "path"_a)
+      .def_static("of_lightmap", &of_lightmap, "scene"_a, "width"_a, "height"_a, "set"_a, "names"_a, "all"_a)
       .def("__len__", [](const List& list) { return list.size(); })
-      .def("points", [](const List& list) { return rows_of(list, &Receiver::point); })
-      .def("normals", [](const List& list) { return rows_of(list, &Receiver::normal); })
+      .def("points", [](const List& list) { return rows_of(list, std::mem_fn(&Receiver::point)); })
+      .def("normals", [](const List& list) { return rows_of(list, std::mem_fn(&Receiver::normal)); })
       .def("unit_normals", &unit_normals_of)
       .def("on",
            [](const List& list) {
@@ -480,9 +466,8 @@ void bind_receivers(py::module_& module) {
         for (const Receiver& receiver : list) ids.append(shown(receiver.id));
         return ids;
       });
-  module.def("find_faces", &find, py::arg("scene"), py::arg("points"), py::arg("normals"), py::arg("tolerance"),
-             py::arg("threads"));
-  module.def("near_misses", &misses, py::arg("scene"), py::arg("points"), py::arg("normals"), py::arg("on"));
+  module.def("find_faces", &find, "scene"_a, "points"_a, "normals"_a, "tolerance"_a, "threads"_a);
+  module.def("near_misses", &misses, "scene"_a, "points"_a, "normals"_a, "on"_a);
 }
 
 }  // namespace exactff::python

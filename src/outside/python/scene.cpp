@@ -2,6 +2,8 @@
 
 #include <pybind11/stl/filesystem.h>
 
+#include <functional>
+
 #include "exactff/models.h"
 #include "exactff/scene_files.h"
 #include "exactff/slips.h"
@@ -9,6 +11,7 @@
 #include "flags/values.h"
 #include "kernel/vec.h"
 #include "python/bindings.h"
+#include "scene/selections.h"
 
 namespace exactff::python {
 
@@ -39,6 +42,7 @@ void write_whole_files(const std::vector<std::pair<std::filesystem::path, std::s
 namespace {
 
 using Shared = std::shared_ptr<SharedScene>;
+using Names = std::vector<std::string>;
 
 Shared shared(Scene scene) { return std::make_shared<SharedScene>(std::move(scene)); }
 
@@ -59,30 +63,23 @@ Shared from_model(const std::string& text, const std::string& patches) {
   return shared(models::make_scene(text, options_of(patches, false)));
 }
 
-// Faces are runs of `corners`, face f from starts[f] to starts[f + 1].
-struct FaceArrays {
-  Integers corners, starts, patches, materials;
-};
+using MaterialRow = std::tuple<std::string, std::array<double, 3>, std::array<double, 3>>;
 
-struct MaterialRow {
-  std::string name;
-  std::array<double, 3> reflectance, radiosity;
-};
-
-Shared build(const Numbers& vertices, const FaceArrays& faces, const std::vector<std::string>& patch_names,
-             const std::vector<MaterialRow>& materials, SceneOptions options) {
-  SceneBuilder builder({}, options);
+// Faces are runs of `all_corners`, face f from starts[f] to starts[f + 1].
+Shared build(const Numbers& vertices, const Integers& all_corners, const Integers& all_starts,
+             const Integers& all_patches, const Integers& all_materials, const Names& patch_names,
+             const std::vector<MaterialRow>& materials, bool skip_bad_faces) {
+  SceneBuilder builder({}, options_of("groups", skip_bad_faces));
   std::vector<PatchId> patches;
   std::vector<MaterialId> material_ids;
   for (const std::string& name : patch_names) patches.push_back(builder.patch(name));
-  for (const MaterialRow& row : materials) {
-    const std::array<double, 3>&kd = row.reflectance, &ke = row.radiosity;
-    material_ids.push_back(builder.add_material(
-        {.name = row.name, .reflectance = {kd[0], kd[1], kd[2]}, .radiosity = {ke[0], ke[1], ke[2]}}));
+  for (const auto& [name, kd, ke] : materials) {
+    material_ids.push_back(
+        builder.add_material({.name = name, .reflectance = {kd[0], kd[1], kd[2]}, .radiosity = {ke[0], ke[1], ke[2]}}));
   }
   const auto points = vertices.unchecked<2>();
-  const auto corners = faces.corners.unchecked<1>(), starts = faces.starts.unchecked<1>(),
-             patch_of = faces.patches.unchecked<1>(), material_of = faces.materials.unchecked<1>();
+  const auto corners = all_corners.unchecked<1>(), starts = all_starts.unchecked<1>(),
+             patch_of = all_patches.unchecked<1>(), material_of = all_materials.unchecked<1>();
   const py::gil_scoped_release released;
   for (py::ssize_t v = 0; v < points.shape(0); ++v) builder.add_vertex({points(v, 0), points(v, 1), points(v, 2)});
   for (py::ssize_t f = 0; f < patch_of.shape(0); ++f) {
@@ -94,25 +91,6 @@ Shared build(const Numbers& vertices, const FaceArrays& faces, const std::vector
   return shared(builder.build());
 }
 
-std::vector<std::string> names_of(const Scene& scene, const std::vector<Selection>& selections) {
-  std::vector<std::string> names;
-  for (const Selection& selection : selections) names.push_back(scene.name_of(selection));
-  return names;
-}
-
-Numbers vertices_of(const SharedScene& self) {
-  const std::span<const Vec3> vertices = self.scene().vertices();
-  Numbers result({static_cast<py::ssize_t>(vertices.size()), py::ssize_t{3}});
-  auto out = result.mutable_unchecked<2>();
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    const auto row = static_cast<py::ssize_t>(v);
-    out(row, 0) = vertices[v].x;
-    out(row, 1) = vertices[v].y;
-    out(row, 2) = vertices[v].z;
-  }
-  return result;
-}
-
 // One number of every face.
 template <class Value, class Get>
 py::array_t<Value> of_faces(const SharedScene& self, const Get& get) {
@@ -120,19 +98,6 @@ py::array_t<Value> of_faces(const SharedScene& self, const Get& get) {
   py::array_t<Value> result(static_cast<py::ssize_t>(faces.size()));
   Value* const out = result.mutable_data();
   for (std::size_t f = 0; f < faces.size(); ++f) out[f] = get(faces[f]);
-  return result;
-}
-
-Numbers fronts_of(const SharedScene& self) {
-  const std::span<const Face> faces = self.scene().faces();
-  Numbers result({static_cast<py::ssize_t>(faces.size()), py::ssize_t{3}});
-  double* out = result.mutable_data();
-  for (const Face& face : faces) {
-    const Vec3 front = kernel::unit_by_inverse(face.newell);
-    *out++ = front.x;
-    *out++ = front.y;
-    *out++ = front.z;
-  }
   return result;
 }
 
@@ -189,13 +154,11 @@ py::list warnings_of(const SharedScene& self) {
   return rows;
 }
 
-std::vector<std::string> faces_of_shape(const SharedScene& self, int shape) {
-  std::vector<std::string> names;
-  const std::span<const Face> faces = self.scene().faces();
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    const Selection face{faces[i].patch, static_cast<FaceId>(i)};
-    if (faces[i].shape == static_cast<FaceShape>(shape)) names.push_back(self.scene().name_of(face));
-  }
+Names faces_of_shape(const SharedScene& self, int shape) {
+  Names names;
+  const auto is_so = [&](const Face& face) { return face.shape == static_cast<FaceShape>(shape); };
+  for (const FaceId id : faces_where(self.scene(), is_so))
+    names.push_back(self.scene().name_of({self.scene().face(id).patch, id}));
   return names;
 }
 
@@ -203,14 +166,6 @@ std::vector<std::size_t> own_faces(const SharedScene& self, const std::string& n
   std::vector<std::size_t> indices;
   for (const FaceId face : own_faces_named(self.scene(), name)) indices.push_back(index_of(face));
   return indices;
-}
-
-Shared with_flipped(const SharedScene& self, const std::vector<std::string>& names) {
-  return shared(self.scene().with_flipped(self.selections(names)));
-}
-
-Shared with_transparent(const SharedScene& self, const std::vector<std::string>& names) {
-  return shared(self.scene().with_transparent(self.selections(names)));
 }
 
 // Tells the files that would be written to `check`, which may raise; then writes them. What the format does not hold.
@@ -274,24 +229,16 @@ Shared with_face_names(const SharedScene& self, const std::vector<std::pair<std:
 
 void bind_scene(py::module_& module) {
   py::class_<SharedScene, Shared>(module, "Scene")
-      .def_static("read", &read_file, py::arg("path"), py::arg("patches"), py::arg("skip_bad_faces"), py::arg("unit"))
-      .def_static("from_model", &from_model, py::arg("text"), py::arg("patches"))
-      .def_static(
-          "build",
-          [](const Numbers& vertices, const Integers& corners, const Integers& starts, const Integers& patches,
-             const Integers& materials, const std::vector<std::string>& patch_names,
-             const std::vector<std::tuple<std::string, std::array<double, 3>, std::array<double, 3>>>& rows,
-             bool skip_bad_faces) {
-            std::vector<MaterialRow> list;
-            for (const auto& [name, kd, ke] : rows) list.push_back({name, kd, ke});
-            return build(vertices, {corners, starts, patches, materials}, patch_names, list,
-                         options_of("groups", skip_bad_faces));
-          },
-          py::arg("vertices"), py::arg("corners"), py::arg("starts"), py::arg("patches"), py::arg("materials"),
-          py::arg("patch_names"), py::arg("material_rows"), py::arg("skip_bad_faces"))
-      .def("vertices", &vertices_of)
+      .def_static("read", &read_file, "path"_a, "patches"_a, "skip_bad_faces"_a, "unit"_a)
+      .def_static("from_model", &from_model, "text"_a, "patches"_a)
+      .def_static("build", &build, "vertices"_a, "corners"_a, "starts"_a, "patches"_a, "materials"_a, "patch_names"_a,
+                  "material_rows"_a, "skip_bad_faces"_a)
+      .def("vertices", [](const SharedScene& s) { return rows_of(s.scene().vertices(), std::identity()); })
       .def("areas", [](const SharedScene& s) { return of_faces<double>(s, [](const Face& f) { return f.area; }); })
-      .def("fronts", &fronts_of)
+      .def("fronts",
+           [](const SharedScene& s) {
+             return rows_of(s.scene().faces(), [](const Face& f) { return kernel::unit_by_inverse(f.newell); });
+           })
       .def("patch_of_face",
            [](const SharedScene& s) {
              return of_faces<std::int64_t>(s,
@@ -300,7 +247,7 @@ void bind_scene(py::module_& module) {
       .def(
           "rings",
           [](const SharedScene& s, std::int64_t face) { return s.scene().face(face_at(s.scene(), face)).rings; },
-          py::arg("face"))
+          "face"_a)
       .def(
           "texture",
           [](const SharedScene& s, std::int64_t face, int set) {
@@ -313,14 +260,13 @@ void bind_scene(py::module_& module) {
             }
             return result;
           },
-          py::arg("face"), py::arg("set"))
+          "face"_a, "set"_a)
       .def("face_count", [](const SharedScene& s) { return s.scene().faces().size(); })
       .def("piece_count", [](const SharedScene& s) { return s.scene().pieces().size(); })
       .def(
           "face_name",
-          [](const SharedScene& s, std::int64_t face) { return s.scene().name_of(face_at(s.scene(), face)); },
-          py::arg("face"))
-      .def("own_faces", &own_faces, py::arg("name"))
+          [](const SharedScene& s, std::int64_t face) { return s.scene().name_of(face_at(s.scene(), face)); }, "face"_a)
+      .def("own_faces", &own_faces, "name"_a)
       .def(
           "faces_of",
           [](const SharedScene& s, const std::string& name) {
@@ -330,39 +276,47 @@ void bind_scene(py::module_& module) {
             }
             return indices;
           },
-          py::arg("name"))
+          "name"_a)
       .def("patches", &patches_of)
       .def("emitters", [](const SharedScene& s) { return names_of(s.scene(), s.scene().emitters()); })
-      .def("with_flipped", &with_flipped, py::arg("names"))
-      .def("with_transparent", &with_transparent, py::arg("names"))
+      .def(
+          "with_flipped",
+          [](const SharedScene& s, const Names& names) { return shared(s.scene().with_flipped(s.selections(names))); },
+          "names"_a)
+      .def(
+          "with_transparent",
+          [](const SharedScene& s, const Names& names) {
+            return shared(s.scene().with_transparent(s.selections(names)));
+          },
+          "names"_a)
       .def(
           "with_patches",
           [](const SharedScene& s, const std::string& patches) {
             return shared(with_patches(s.scene(), scene_options(patches)));
           },
-          py::arg("patches"))
-      .def("with_names", &with_face_names, py::arg("names"))
-      .def("welded", &welded_of, py::arg("length"))
+          "patches"_a)
+      .def("with_names", &with_face_names, "names"_a)
+      .def("welded", &welded_of, "length"_a)
       .def("gap", &gap_of)
-      .def("divided", &divided_of, py::arg("length"))
+      .def("divided", &divided_of, "length"_a)
       .def(
           "cells_of",
           [](const SharedScene& s, const std::string& name) { return names_of(s.scene(), s.scene().select_all(name)); },
-          py::arg("name"))
+          "name"_a)
       .def(
           "names_like",
           [](const SharedScene& s, const std::vector<std::string>& names) {
             return names.empty() ? names : names_of(s.scene(), s.selections(names));
           },
-          py::arg("names"))
+          "names"_a)
       .def("triangulated", [](const SharedScene& s) { return shared(triangulated(s.scene())); })
-      .def("write", &write_scene, py::arg("path"), py::arg("encoding"), py::arg("check"))
+      .def("write", &write_scene, "path"_a, "encoding"_a, "check"_a)
       .def("flipped", [](const SharedScene& s) { return names_of(s.scene(), s.scene().flipped()); })
       .def("transparent", [](const SharedScene& s) { return names_of(s.scene(), s.scene().transparent()); })
       .def("warnings", &warnings_of)
       .def("findings", &findings_of)
       .def("contacts", &contacts_of)
-      .def("faces_of_shape", &faces_of_shape, py::arg("shape"))
+      .def("faces_of_shape", &faces_of_shape, "shape"_a)
       .def("open_edges",
            [](const SharedScene& s) {
              const py::gil_scoped_release released;

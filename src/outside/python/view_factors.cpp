@@ -13,6 +13,7 @@
 #include "matrix/row_on_faces.h"
 #include "python/bindings.h"
 #include "radiosity/narrowing.h"
+#include "scene/selections.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
@@ -244,9 +245,9 @@ py::tuple view_of(const SharedScene& scene, const std::array<double, 3>& point, 
 void bind_view_factors(py::module_& module) {
   py::class_<MadeMatrix, std::shared_ptr<MadeMatrix>>(module, "MadeMatrix")
       .def("balanced", &MadeMatrix::balanced)
-      .def("exchange", &MadeMatrix::exchange, py::arg("threads"), py::arg("path"), py::arg("progress"))
-      .def("temperatures", &MadeMatrix::temperatures, py::arg("known"), py::arg("heats"), py::arg("path"))
-      .def("write", &MadeMatrix::write, py::arg("path"), py::arg("format"), py::arg("zone"));
+      .def("exchange", &MadeMatrix::exchange, "threads"_a, "path"_a, "progress"_a)
+      .def("temperatures", &MadeMatrix::temperatures, "known"_a, "heats"_a, "path"_a)
+      .def("write", &MadeMatrix::write, "path"_a, "format"_a, "zone"_a);
   py::list formats;
   for (const matrix::ProgramFormat& one : matrix::program_formats()) {
     formats.append(py::make_tuple(std::string(one.name), std::string(one.extension), std::string(one.lost)));
@@ -255,14 +256,13 @@ void bind_view_factors(py::module_& module) {
   py::list beside;
   for (const std::string_view name : matrix::kOpenFoamFiles) beside.append(std::string(name));
   module.attr("openfoam_files") = py::tuple(beside);
-  module.def("view_factor", &view_factor_of, py::arg("scene"), py::arg("from_patch"), py::arg("to_patch"),
-             py::arg("accuracy"), py::arg("budget"), py::arg("certify"));
-  module.def("view_factor_matrix", &view_factor_matrix_of, py::arg("scene"), py::arg("from_patches"),
-             py::arg("to_patches"), py::arg("accuracy"), py::arg("budget"), py::arg("certify"), py::arg("backs"),
-             py::arg("open"), py::arg("both_directions"), py::arg("sums"), py::arg("threads"), py::arg("progress"));
-  module.def("with_two_sided", &with_two_sided_of, py::arg("scene"), py::arg("names"));
-  module.def("view", &view_of, py::arg("scene"), py::arg("point"), py::arg("normal"), py::arg("on"), py::arg("faces"),
-             py::arg("digits"), py::arg("precision_cap"), py::arg("measure"));
+  module.def("view_factor", &view_factor_of, "scene"_a, "from_patch"_a, "to_patch"_a, "accuracy"_a, "budget"_a,
+             "certify"_a);
+  module.def("view_factor_matrix", &view_factor_matrix_of, "scene"_a, "from_patches"_a, "to_patches"_a, "accuracy"_a,
+             "budget"_a, "certify"_a, "backs"_a, "open"_a, "both_directions"_a, "sums"_a, "threads"_a, "progress"_a);
+  module.def("with_two_sided", &with_two_sided_of, "scene"_a, "names"_a);
+  module.def("view", &view_of, "scene"_a, "point"_a, "normal"_a, "on"_a, "faces"_a, "digits"_a, "precision_cap"_a,
+             "measure"_a);
 }
 
 // --- radiosities after all bounces ---
@@ -329,10 +329,9 @@ py::tuple radiosity_of(const SharedScene& scene, std::optional<double> accuracy,
     wide = wide_entries(matrix);
     return solved;
   });
-  std::vector<std::string> names, no_bound;
-  for (const Selection& patch : solution.patches) names.push_back(in.name_of(patch));
+  std::vector<std::string> no_bound;
   for (const Channel& channel : solution.channels) no_bound.push_back(channel.no_bound);
-  return py::make_tuple(names, solution.areas, quantities_of(solution), no_bound,
+  return py::make_tuple(names_of(in, solution.patches), solution.areas, quantities_of(solution), no_bound,
                         std::string(to_string(solution.claim)), balance_of(solution),
                         std::string(to_string(solution.claim_of_balance)), solution.reasons_against_balance, wide,
                         widest_bounds(solution).share, solution.computed_again);
@@ -341,8 +340,8 @@ py::tuple radiosity_of(const SharedScene& scene, std::optional<double> accuracy,
 }  // namespace
 
 void bind_radiosity(py::module_& module) {
-  module.def("radiosity", &radiosity_of, py::arg("scene"), py::arg("accuracy"), py::arg("budget"), py::arg("width"),
-             py::arg("backs"), py::arg("threads"), py::arg("progress"));
+  module.def("radiosity", &radiosity_of, "scene"_a, "accuracy"_a, "budget"_a, "width"_a, "backs"_a, "threads"_a,
+             "progress"_a);
 }
 
 }  // namespace exactff::python

@@ -297,16 +297,15 @@ class Matcher {
   void check_request() {
     const auto is_tolerance = [](double t) { return std::isfinite(t) && t >= 0.0; };
     if (!is_tolerance(options_.tolerance) || !is_tolerance(options_.normal_tolerance)) {
-      throw InputError({.what = "the tolerance for matching is negative or not finite",
-                        .why = "a tolerance is a distance",
-                        .suggestion = "give 0 or more"});
+      text::refuse("the tolerance for matching is negative or not finite", "a tolerance is a distance",
+                   "give 0 or more");
     }
     if (options_.by == MatchBy::kPosition && !truth_.has_points) {
-      throw InputError({truth_.file, 0, "has no columns x, y and z", "matching by position needs them",
-                        "match by receiver instead"});
+      text::refuse(truth_.file, "has no columns x, y and z", "matching by position needs them",
+                   "match by receiver instead");
     }
     if (table_.rows() == 0) {
-      throw InputError({file_, 0, "has no rows", "there is nothing to check", "write one row per value"});
+      text::refuse(file_, "has no rows", "there is nothing to check", "write one row per value");
     }
   }
 
@@ -332,9 +331,9 @@ class Matcher {
 
   void require_single_source() const {
     if (truth_.sources.size() == 1) return;
-    throw InputError({file_, 0, "has no column that names the " + truth_.keys[1],
-                      "the truth has " + std::to_string(truth_.sources.size()) + ": " + source_names(),
-                      "add a column named " + truth_.keys[1] + ", or name the column with --source-column"});
+    text::refuse(file_, "has no column that names the " + truth_.keys[1],
+                 "the truth has " + std::to_string(truth_.sources.size()) + ": " + source_names(),
+                 "add a column named " + truth_.keys[1] + ", or name the column with --source-column");
   }
 
   [[nodiscard]] std::string receiver_word() const { return word_of(truth_.keys[0]); }

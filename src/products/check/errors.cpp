@@ -11,6 +11,7 @@
 #include "kernel/statistics.h"
 #include "text/hashes.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff::check {
 
@@ -224,9 +225,8 @@ using Rows = std::vector<Errors::Index>;
 
 void require_limit(const std::optional<double>& limit, std::string_view name) {
   if (!limit || *limit >= 0.0) return;
-  throw InputError({.what = "the limit for " + std::string(name) + " is " + text::shortest(*limit),
-                    .why = "errors are never negative",
-                    .suggestion = "give 0 or more"});
+  text::refuse("the limit for " + std::string(name) + " is " + text::shortest(*limit), "errors are never negative",
+               "give 0 or more");
 }
 
 }  // namespace
@@ -241,9 +241,8 @@ void check_criteria(const Criteria& criteria) {
   for (const Quantile& quantile : criteria.quantiles) {
     require_limit(quantile.limit, name_of(quantile));
     if (quantile.share > 0.0 && quantile.share <= 1.0) continue;
-    throw InputError({.what = "the share of a quantile is " + text::shortest(quantile.share),
-                      .why = "a quantile is a share of the rows",
-                      .suggestion = "give a number above 0 and up to 1, for example 0.99"});
+    text::refuse("the share of a quantile is " + text::shortest(quantile.share), "a quantile is a share of the rows",
+                 "give a number above 0 and up to 1, for example 0.99");
   }
 }
 
@@ -322,15 +321,15 @@ class Judge {
 
   void require_rho_b() const {
     if (!criteria_.eps_b || report_.overall.radiosity) return;
-    throw InputError({truth_.file, 0, "does not contain rho B for every row",
-                      "--eps-b limits the error in radiosity, which is the absolute error times rho B",
-                      "use a truth file with the column largest_rho_b, or use --max-abs"});
+    text::refuse(truth_.file, "does not contain rho B for every row",
+                 "--eps-b limits the error in radiosity, which is the absolute error times rho B",
+                 "use a truth file with the column largest_rho_b, or use --max-abs");
   }
 
   void require_image() const {
     if (!criteria_.relative_mse || truth_.kind == kImage) return;
-    throw InputError({truth_.file, 0, "is not an image", "--relative-mse limits an error of images",
-                      "compare two .exr files, or use --rms"});
+    text::refuse(truth_.file, "is not an image", "--relative-mse limits an error of images",
+                 "compare two .exr files, or use --rms");
   }
 
   void add_finiteness() {
@@ -403,18 +402,18 @@ Report judge(const Truth& truth, const std::vector<Measured>& values, const Crit
   const kernel::StandardArithmetic arithmetic;
   check_criteria(criteria);
   if (values.empty()) {
-    throw InputError(
-        {truth.file, 0, "has no row to check", "a check without rows would always pass", "give values for its rows"});
+    text::refuse(truth.file, "has no row to check", "a check without rows would always pass",
+                 "give values for its rows");
   }
   return Judge(truth, values, criteria).judge(candidate_file);
 }
 
 Report judge(const Truth& truth, std::span<const double> values, const Criteria& criteria) {
   if (values.size() != truth.rows.size()) {
-    throw InputError(
-        {truth.file, 0,
-         "has " + text::counted(truth.rows.size(), "row") + ", but there are " + text::counted(values.size(), "value"),
-         "every row needs one value", "give the values in the order of its rows"});
+    text::refuse(
+        truth.file,
+        "has " + text::counted(truth.rows.size(), "row") + ", but there are " + text::counted(values.size(), "value"),
+        "every row needs one value", "give the values in the order of its rows");
   }
   std::vector<Measured> measured;
   measured.reserve(values.size());

@@ -65,11 +65,11 @@ class ImageReader {
       add_pixel(i);
     }
     if (images_.truth.rows.empty()) {
-      text::refuse(fs::path(truth_.file), "no pixel has a value in " + images_.truth.column,
-                   "there is nothing to compare with", "give an image with numbers that are finite");
+      text::refuse(truth_.file, "no pixel has a value in " + images_.truth.column, "there is nothing to compare with",
+                   "give an image with numbers that are finite");
     }
     if (missing_ > 0 && !partial) {
-      text::refuse(fs::path(candidate_.file),
+      text::refuse(candidate_.file,
                    text::counted(missing_, "pixel") + " of the truth " + (missing_ == 1 ? "is" : "are") + " missing",
                    "it has " + words_of(candidate_.data) + ", the truth " + words_of(images_.window),
                    "render the same window, or compare the pixels that there are with --partial");

@@ -12,6 +12,7 @@
 #include "text/escape.h"
 #include "text/json_document.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "text/text_lines.h"
 
 namespace exactff::check {
@@ -212,12 +213,11 @@ bool may_be_recorded(const Report& report) {
 void hold_against_baseline(Report& report, const std::filesystem::path& path, double slack) {
   const kernel::StandardArithmetic arithmetic;
   if (!(slack >= 0.0) || std::isinf(slack)) {
-    throw InputError({.what = "the slack for the baseline is " + text::shortest(slack),
-                      .why = "the slack is a share of the recorded errors",
-                      .suggestion = "give 0 or more, for example 0.1"});
+    text::refuse("the slack for the baseline is " + text::shortest(slack),
+                 "the slack is a share of the recorded errors", "give 0 or more, for example 0.1");
   }
   const auto refuse = [&](const char* what, const char* why, const char* suggestion) {
-    throw InputError({path.string(), 0, what, why, suggestion});
+    text::refuse(path, what, why, suggestion);
   };
   constexpr const char* kNoNumbers = "there is nothing to compare with";
   constexpr const char* kRecord = "record one with --write-baseline";

@@ -259,7 +259,7 @@ struct ExrFile::Content {
   std::mutex mutex;  // the library's file has one position
 
   [[noreturn]] void refuse(const std::string& what, const std::string& why) const {
-    text::refuse(std::filesystem::path(name), what, why, "write it again with the program that made it");
+    text::refuse(name, what, why, "write it again with the program that made it");
   }
   // Calls the library; what it throws becomes an InputError.
   template <class Call>
@@ -281,8 +281,7 @@ struct ExrFile::Content {
 
 void ExrFile::Content::open() {
   if (!has_magic_number(bytes)) {
-    text::refuse(std::filesystem::path(name), "is no OpenEXR file", "its first four bytes are others",
-                 "give an .exr file");
+    text::refuse(name, "is no OpenEXR file", "its first four bytes are others", "give an .exr file");
   }
   if (const std::string fault = fault_of_headers(bytes); !fault.empty()) refuse("is damaged", fault);
   guard([&] {
@@ -295,8 +294,7 @@ void ExrFile::Content::open() {
 void ExrFile::Content::list_channels(int part) {
   const Imf::Header& header = file->header(part);
   if (is_deep(header)) {
-    text::refuse(std::filesystem::path(name), "is a deep image", "its pixels have several samples each",
-                 "save a flat image");
+    text::refuse(name, "is a deep image", "its pixels have several samples each", "save a flat image");
   }
   const std::string prefix = file->parts() > 1 && header.hasName() ? header.name() : std::string();
   for (auto at = header.channels().begin(); at != header.channels().end(); ++at) {
@@ -368,13 +366,12 @@ std::vector<std::vector<float>> ExrFile::read(std::span<const Channel> channels)
   if (channels.empty()) return numbers;
   const Window window = data_window(channels.front());
   if (window.pixels() > kMostReceivers) {
-    text::refuse(std::filesystem::path(file()), "has " + std::to_string(window.pixels()) + " pixels",
+    text::refuse(file(), "has " + std::to_string(window.pixels()) + " pixels",
                  "at most " + std::to_string(kMostReceivers) + " are read", "crop it");
   }
   for (const Channel& channel : channels) {
     if (data_window(channel) != window) {
-      text::refuse(std::filesystem::path(file()),
-                   "the data windows of '" + channels.front().name + "' and '" + channel.name + "' differ",
+      text::refuse(file(), "the data windows of '" + channels.front().name + "' and '" + channel.name + "' differ",
                    "each pixel needs a number of both", "save all layers with one data window");
     }
   }

@@ -98,7 +98,7 @@ std::vector<Layer> layers_called(const ExrFile& file, const std::string& name) {
 // Lists the layers that there are.
 [[noreturn]] void refuse_layer(const ExrFile& file, const std::string& what, const std::string& wanted,
                                const std::string& flag) {
-  text::refuse(std::filesystem::path(file.file()), what, list_of_layers(file), suggestion_for(file, wanted, flag));
+  text::refuse(file.file(), what, list_of_layers(file), suggestion_for(file, wanted, flag));
 }
 
 // --- Gbuffer ---
@@ -145,7 +145,7 @@ Chosen choose(const ExrFile& file, const std::string& given, const std::string& 
   }
   for (const Channel& channel : chosen.channels) {
     if (channel.kind == Kind::kFloat && !channel.lossy) continue;
-    text::refuse(std::filesystem::path(file.file()),
+    text::refuse(file.file(),
                  "layer '" + chosen.name + "' has " +
                      (channel.kind == Kind::kHalf    ? "half floats"
                       : channel.kind == Kind::kWhole ? "whole numbers"
@@ -226,7 +226,7 @@ GBuffer read_gbuffer(const ExrFile& file, const GBufferLayers& layers) {
     result.frame.pixels.push_back(static_cast<std::uint32_t>(i));
   }
   if (result.receivers.empty()) {
-    text::refuse(std::filesystem::path(file.file()), "no pixel hits anything in " + result.layers,
+    text::refuse(file.file(), "no pixel hits anything in " + result.layers,
                  "every normal is zero, or numbers are not finite, or alpha is 0", "look at the layers of this file");
   }
   return result;
@@ -246,7 +246,7 @@ std::string words_on_depth(const GBuffer& gbuffer) {
 void require_most_on_faces(const GBuffer& gbuffer, std::size_t without, double tolerance) {
   const std::size_t all = gbuffer.receivers.size();
   if (2 * without <= all) return;
-  text::refuse(std::filesystem::path(gbuffer.file),
+  text::refuse(gbuffer.file,
                "the points of " + text::counted_of(without, all, "pixel") + " lie on no face of the scene, within " +
                    text::short_number(tolerance),
                "the points are in another coordinate system or of another scene" + words_on_depth(gbuffer),

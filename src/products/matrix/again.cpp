@@ -1,12 +1,10 @@
 #include "matrix/again.h"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "files/parallel.h"
 #include "kernel/float_environment.h"

@@ -13,6 +13,7 @@
 #include "kernel/double_double.h"
 #include "kernel/float_environment.h"
 #include "matrix/row_facts.h"
+#include "scene/selections.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
@@ -531,9 +532,7 @@ void require_balanceable(const Scene& scene, const Matrix& matrix) {
 Balanced balanced(const Scene& scene, const Matrix& matrix) {
   const kernel::StandardArithmetic arithmetic;
   require_balanceable(scene, matrix);
-  std::vector<std::string> names;
-  for (const Selection& patch : matrix.factors.from) names.push_back(scene.name_of(patch));
-  return balanced_of(matrix, names);
+  return balanced_of(matrix, names_of(scene, matrix.factors.from));
 }
 
 namespace {

@@ -1,7 +1,6 @@
 // The columns of a matrix file, and what its head says.
 #pragma once
 
-#include <cmath>
 #include <optional>
 #include <span>
 #include <string>

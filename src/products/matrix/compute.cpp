@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <set>
-#include <stdexcept>
 
 #include "exactff/matrix.h"
 #include "files/parallel.h"

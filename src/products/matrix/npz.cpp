@@ -5,6 +5,7 @@
 #include "files/numpy.h"
 #include "kernel/float_environment.h"
 #include "matrix/row_facts.h"
+#include "scene/selections.h"
 
 namespace exactff::matrix {
 namespace {
@@ -50,12 +51,6 @@ void add_sums_of(files::NpzFile& file, const Matrix& matrix) {
   file.add("sum_radius", radii);
 }
 
-void add_names(files::NpzFile& file, const char* name, const Scene& scene, const std::vector<Selection>& patches) {
-  std::vector<std::string> names;
-  for (const Selection& patch : patches) names.push_back(scene.name_of(patch));
-  file.add_texts(name, names);
-}
-
 }  // namespace
 
 void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::path& path, const Balanced* balanced) {
@@ -90,8 +85,8 @@ void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::
   file.add("radius", radii);
   file.add_texts("claim", claims);
   file.add_texts("way", ways);
-  add_names(file, "from", scene, all.from);
-  add_names(file, "to", scene, all.to);
+  file.add_texts("from", names_of(scene, all.from));
+  file.add_texts("to", names_of(scene, all.to));
   file.add("area_from", area_from);
   file.add("area_to", area_to);
   add_column(file, "back", matrix.back, balanced == nullptr ? nullptr : &balanced->back);

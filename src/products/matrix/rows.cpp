@@ -1,7 +1,6 @@
 #include "matrix/rows.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "files/file.h"
@@ -109,7 +108,7 @@ Matrix matrix_of(const Request& request, NamedMatrix named) {
                     are_names(*request.scene, request.to, named.to) && named.back.empty() != request.options.backs &&
                     named.open.empty() != request.options.open;
   if (!same) {
-    text::refuse(fs::path(named.file), "holds other rows or columns than those that are asked for",
+    text::refuse(named.file, "holds other rows or columns than those that are asked for",
                  "its entries would be taken for others", "compute the matrix again, or name another file");
   }
   return {{request.from, request.to, std::move(named.entries)},

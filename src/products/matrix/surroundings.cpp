@@ -13,6 +13,7 @@
 #include "scene/closed_surfaces.h"
 #include "scene/contacts.h"
 #include "scene/scene_copy.h"
+#include "scene/selections.h"
 #include "text/refuse.h"
 #include "view_factors/pairs.h"
 #include "visibility/source_plane.h"
@@ -32,11 +33,7 @@ std::vector<std::uint32_t> reversed_corners_of(const Scene& scene, const Piece& 
 }
 
 std::vector<FaceId> faces_with_area(const Scene& scene) {
-  std::vector<FaceId> faces;
-  for (std::size_t f = 0; f < scene.faces().size(); ++f) {
-    if (scene.faces()[f].piece_count > 0) faces.push_back(static_cast<FaceId>(f));
-  }
-  return faces;
+  return faces_where(scene, [](const Face& face) { return face.piece_count > 0; });
 }
 
 bool belongs_to(const ClosedSurfaces& surfaces, std::uint32_t piece) {

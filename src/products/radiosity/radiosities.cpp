@@ -27,11 +27,9 @@ Radiosities of_patches(std::vector<Selection> patches) {
 }
 
 [[noreturn]] void refuse_unbounded(const std::string& file, std::size_t channel) {
-  throw InputError(
-      {.file = file,
-       .what = "there is no bound for " + std::string(kChannelNames[channel]),
-       .why = "what is gathered from estimates alone would have no bounds either",
-       .suggestion = "lower Kd where it is 1, or compute narrower view factors by --accuracy and --budget"});
+  text::refuse(file, "there is no bound for " + std::string(kChannelNames[channel]),
+               "what is gathered from estimates alone would have no bounds either",
+               "lower Kd where it is 1, or compute narrower view factors by --accuracy and --budget");
 }
 
 void require_scene(const Scene& scene, const SolutionFile& file) {

@@ -15,6 +15,7 @@
 #include "kernel/vec.h"
 #include "scene/shaft_tree.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff::render {
 namespace {
@@ -233,9 +234,9 @@ Camera default_camera(const Scene& scene, const CameraWishes& wishes, const Size
     look_from_inside(scene, box, like, size, best);
   }
   if (best.score < 0.0) {
-    throw InputError({.what = "no camera was found that shows the scene",
-                      .why = "its coordinates are too large or too close together for a view of the whole",
-                      .suggestion = "give a camera with --eye and --look"});
+    text::refuse("no camera was found that shows the scene",
+                 "its coordinates are too large or too close together for a view of the whole",
+                 "give a camera with --eye and --look");
   }
   best.camera.ortho = like.ortho;  // a height that is given counts, whatever it shows
   return best.camera;

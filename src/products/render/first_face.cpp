@@ -14,7 +14,6 @@
 // Every sign is decided by a floating-point filter with a proved bound, or else by exact integers. For t the filter
 // gives an interval; where two intervals overlap, the fractions are compared exactly. The point is computed in
 // double-double arithmetic with an error bound, and by rationals where that does not determine the double.
-#include <algorithm>
 #include <array>
 #include <boost/container/small_vector.hpp>
 #include <cmath>
@@ -103,6 +102,23 @@ int compare(const ExactDepth& a, const ExactDepth& b) {
   return cmp(left, right);
 }
 
+Bounded exact_bounded(const kernel::double_double::DoubleDouble& x) { return kernel::double_double::bounded(x, 0.0); }
+
+struct FineVec3 {
+  Bounded x, y, z;
+};
+
+FineVec3 fine_difference(const Vec3& a, const Vec3& b) {
+  using kernel::double_double::two_sum;
+  return {exact_bounded(two_sum(a.x, -b.x)), exact_bounded(two_sum(a.y, -b.y)), exact_bounded(two_sum(a.z, -b.z))};
+}
+
+FineVec3 fine_cross(const FineVec3& a, const FineVec3& b) {
+  using kernel::double_double::sum_of_products;
+  return {sum_of_products(a.y, b.z, -a.z, b.y), sum_of_products(a.z, b.x, -a.x, b.z),
+          sum_of_products(a.x, b.y, -a.y, b.x)};
+}
+
 // One ray through a scene.
 class Search {
  public:
@@ -185,69 +201,50 @@ class Search {
     return {abs(kernel::dot(n, to_p.v)), abs(kernel::dot(n, d.v)), to_p.exponent - d.exponent};
   }
 
-  [[nodiscard]] Vec3 point_on(const Piece& piece) const;
-  [[nodiscard]] Bounded fine_depth(const Piece& piece) const;
+  [[nodiscard]] Vec3 point_on(const Piece& piece) const {
+    const Vec3 &p = corner(piece.frame[0]), &q = corner(piece.frame[1]), &r = corner(piece.frame[2]);
+    const Bounded t = fine_depth(piece);
+    std::optional<Rational> exact_t;
+    std::array<double, 3> point{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double at = kernel::coordinate(p, axis), from = kernel::coordinate(o_, axis),
+                   slope = kernel::coordinate(d_, axis);
+      if (at == kernel::coordinate(q, axis) &&
+          at == kernel::coordinate(r, axis)) {  // the plane is perpendicular to this axis
+        point[axis] = at;
+        continue;
+      }
+      if (const auto quick = kernel::double_double::nearest(exact_bounded({from, 0.0}) + slope * t)) {
+        point[axis] = *quick;
+        continue;
+      }
+      if (!exact_t) {
+        const ExactDepth depth = exact_depth(best_->piece);
+        Rational quotient(depth.numerator, depth.denominator);
+        quotient.canonicalize();
+        exact_t = kernel::times_power_of_two(std::move(quotient), depth.exponent);
+      }
+      point[axis] = kernel::nearest_double(kernel::to_rational(from) + *exact_t * kernel::to_rational(slope));
+    }
+    return {point[0], point[1], point[2]};
+  }
+
+  // t in double-double arithmetic. A number beyond the range makes the error infinite or NaN.
+  [[nodiscard]] Bounded fine_depth(const Piece& piece) const {
+    const Vec3& p = corner(piece.frame[0]);
+    const FineVec3 n =
+        fine_cross(fine_difference(corner(piece.frame[1]), p), fine_difference(corner(piece.frame[2]), p));
+    const FineVec3 to_p = fine_difference(p, o_);
+    const Bounded numerator = sum_of_products(n.x, to_p.x, n.y, to_p.y) + n.z * to_p.z;
+    const Bounded denominator = (d_.x * n.x + d_.y * n.y) + d_.z * n.z;
+    return numerator / denominator;
+  }
 
   const Scene& scene_;
   const Vec3 o_, d_;
   const Approx3 approx_d_;
   std::optional<Best> best_;
 };
-
-Bounded exact_bounded(const kernel::double_double::DoubleDouble& x) { return kernel::double_double::bounded(x, 0.0); }
-
-struct FineVec3 {
-  Bounded x, y, z;
-};
-
-FineVec3 fine_difference(const Vec3& a, const Vec3& b) {
-  using kernel::double_double::two_sum;
-  return {exact_bounded(two_sum(a.x, -b.x)), exact_bounded(two_sum(a.y, -b.y)), exact_bounded(two_sum(a.z, -b.z))};
-}
-
-FineVec3 fine_cross(const FineVec3& a, const FineVec3& b) {
-  using kernel::double_double::sum_of_products;
-  return {sum_of_products(a.y, b.z, -a.z, b.y), sum_of_products(a.z, b.x, -a.x, b.z),
-          sum_of_products(a.x, b.y, -a.y, b.x)};
-}
-
-// t in double-double arithmetic. A number beyond the range makes the error infinite or NaN.
-Bounded Search::fine_depth(const Piece& piece) const {
-  const Vec3& p = corner(piece.frame[0]);
-  const FineVec3 n = fine_cross(fine_difference(corner(piece.frame[1]), p), fine_difference(corner(piece.frame[2]), p));
-  const FineVec3 to_p = fine_difference(p, o_);
-  const Bounded numerator = sum_of_products(n.x, to_p.x, n.y, to_p.y) + n.z * to_p.z;
-  const Bounded denominator = (d_.x * n.x + d_.y * n.y) + d_.z * n.z;
-  return numerator / denominator;
-}
-
-Vec3 Search::point_on(const Piece& piece) const {
-  const Vec3 &p = corner(piece.frame[0]), &q = corner(piece.frame[1]), &r = corner(piece.frame[2]);
-  const Bounded t = fine_depth(piece);
-  std::optional<Rational> exact_t;
-  std::array<double, 3> point{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const double at = kernel::coordinate(p, axis), from = kernel::coordinate(o_, axis),
-                 slope = kernel::coordinate(d_, axis);
-    if (at == kernel::coordinate(q, axis) &&
-        at == kernel::coordinate(r, axis)) {  // the plane is perpendicular to this axis
-      point[axis] = at;
-      continue;
-    }
-    if (const auto quick = kernel::double_double::nearest(exact_bounded({from, 0.0}) + slope * t)) {
-      point[axis] = *quick;
-      continue;
-    }
-    if (!exact_t) {
-      const ExactDepth depth = exact_depth(best_->piece);
-      Rational quotient(depth.numerator, depth.denominator);
-      quotient.canonicalize();
-      exact_t = kernel::times_power_of_two(std::move(quotient), depth.exponent);
-    }
-    point[axis] = kernel::nearest_double(kernel::to_rational(from) + *exact_t * kernel::to_rational(slope));
-  }
-  return {point[0], point[1], point[2]};
-}
 
 }  // namespace
 

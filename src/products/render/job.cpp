@@ -1,6 +1,5 @@
 #include "render/job.h"
 
-#include <algorithm>
 #include <map>
 
 #include "exactff/version.h"
@@ -8,6 +7,7 @@
 #include "kernel/float_environment.h"
 #include "scene/scene.h"
 #include "text/escape.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
@@ -168,6 +168,12 @@ std::string words_of(const Vec3& v) {
   return text::shortest(v.x) + ' ' + text::shortest(v.y) + ' ' + text::shortest(v.z);
 }
 
+std::string names_of(const Scene& scene, const std::vector<Selection>& selections) {
+  std::string names;
+  for (const Selection& one : selections) names += (names.empty() ? "" : " + ") + text::printable(scene.name_of(one));
+  return names;
+}
+
 }  // namespace
 
 std::string flags_of(const View& view) {
@@ -177,21 +183,10 @@ std::string flags_of(const View& view) {
          " --size " + std::to_string(view.size().width) + 'x' + std::to_string(view.size().height);
 }
 
-namespace {
-
-std::string names_of(const Scene& scene, const std::vector<Selection>& selections) {
-  std::string names;
-  for (const Selection& one : selections) names += (names.empty() ? "" : " + ") + text::printable(scene.name_of(one));
-  return names;
-}
-
-}  // namespace
-
 std::string Job::names_of_sources() const {
-  std::string names;
-  for (std::size_t s = 0; s < factors().count(); ++s)
-    names += (s > 0 ? " + " : "") + text::printable(factors().name_of(s));
-  return names;
+  std::vector<std::string> names;
+  for (std::size_t s = 0; s < factors().count(); ++s) names.push_back(text::printable(factors().name_of(s)));
+  return text::joined(names, " + ");
 }
 
 Metadata Job::metadata() const {
@@ -251,9 +246,7 @@ std::string words_of_measure(const Measure& measure) {
   std::string words(to_string(measure.kind));
   if (measure.sphere) words += " of a sphere";
   if (measure.kind != MeasureKind::kOvercast) return words;
-  words += ", up";
-  for (const double c : {measure.up.x, measure.up.y, measure.up.z}) words += ' ' + text::shortest(c);
-  return words;
+  return words + ", up " + words_of(measure.up);
 }
 
 std::string identity_of(const Request& request, const std::optional<methods::Choice>& against) {

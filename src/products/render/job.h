@@ -13,6 +13,14 @@
 
 namespace exactff::render {
 
+inline std::size_t pixels_of(const Size& size) {
+  return static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
+}
+// The place of a pixel, row by row.
+inline std::size_t pixel_at(const Size& size, int column, int row) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(column);
+}
+
 // Threads may share it.
 class Job {
  public:

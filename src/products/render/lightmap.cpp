@@ -153,8 +153,7 @@ std::vector<FaceId> faces_of(const Scene& scene, const std::vector<Selection>& o
 Atlas::Atlas(const Scene& scene, const Lightmap& lightmap) : scene_(&scene), lightmap_(lightmap) {
   const kernel::StandardArithmetic arithmetic;
   require_possible(lightmap);
-  const std::size_t texels =
-      static_cast<std::size_t>(lightmap.size.width) * static_cast<std::size_t>(lightmap.size.height);
+  const std::size_t texels = pixels_of(lightmap.size);
   shown_.assign(texels, kNoTriangle);
   for (const FaceId face : faces_of(scene, lightmap.on)) take(face);
   if (charts_.faces == 0) {
@@ -206,8 +205,7 @@ bool Atlas::fill(std::uint32_t index, std::vector<bool>& inside, std::vector<boo
     for (int column = left; column <= right; ++column) {
       const int place = test.place_of(centre_of(lightmap_.size, column, row));
       if (place < 0) continue;
-      const std::size_t texel = static_cast<std::size_t>(row) * static_cast<std::size_t>(lightmap_.size.width) +
-                                static_cast<std::size_t>(column);
+      const std::size_t texel = pixel_at(lightmap_.size, column, row);
       if (shown_[texel] == kNoTriangle) {
         shown_[texel] = index;
         ++charts_.texels;
@@ -285,8 +283,7 @@ std::optional<Hit> Atlas::hit(int column, int row) const {
   const kernel::StandardArithmetic arithmetic;
   const Size& size = lightmap_.size;
   if (column < 0 || row < 0 || column >= size.width || row >= size.height) return std::nullopt;
-  const std::uint32_t index =
-      shown_[static_cast<std::size_t>(row) * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(column)];
+  const std::uint32_t index = shown_[pixel_at(size, column, row)];
   if (index == kNoTriangle) return std::nullopt;
   const Triangle& triangle = triangles_[index];
   Shares shares(triangle.at, size, centre_of(size, column, row));

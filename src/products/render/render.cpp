@@ -28,22 +28,17 @@ struct Tile {
 class Tiles {
  public:
   explicit Tiles(const Size& size)
-      : size_(size),
-        columns_((size.width + kTileSide - 1) / kTileSide),
-        rows_((size.height + kTileSide - 1) / kTileSide) {}
+      : size_(size), tiles_{(size.width + kTileSide - 1) / kTileSide, (size.height + kTileSide - 1) / kTileSide} {}
 
-  [[nodiscard]] std::size_t count() const {
-    return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-  }
+  [[nodiscard]] std::size_t count() const { return pixels_of(tiles_); }
   [[nodiscard]] Tile operator[](std::size_t index) const {
-    const auto columns = static_cast<std::size_t>(columns_);
+    const auto columns = static_cast<std::size_t>(tiles_.width);
     const int left = static_cast<int>(index % columns) * kTileSide, top = static_cast<int>(index / columns) * kTileSide;
     return {left, top, std::min(kTileSide, size_.width - left), std::min(kTileSide, size_.height - top)};
   }
 
  private:
-  Size size_;
-  int columns_, rows_;
+  Size size_, tiles_;
 };
 
 // The result of a tile: the numbers of its pixels one after the other, as Numbers lists them.
@@ -143,22 +138,20 @@ class Brushes {
 
   void paint(const Tile& tile, TileResult& result) {
     std::unique_ptr<Brush> brush = take();
+    if (!brush) brush = std::make_unique<Brush>(job_);
     brush->paint(tile, result);
     const std::scoped_lock lock(mutex_);
     free_.push_back(std::move(brush));
   }
 
  private:
+  // Null if all are in use.
   std::unique_ptr<Brush> take() {
-    {
-      const std::scoped_lock lock(mutex_);
-      if (!free_.empty()) {
-        std::unique_ptr<Brush> brush = std::move(free_.back());
-        free_.pop_back();
-        return brush;
-      }
-    }
-    return std::make_unique<Brush>(job_);
+    const std::scoped_lock lock(mutex_);
+    if (free_.empty()) return nullptr;
+    std::unique_ptr<Brush> brush = std::move(free_.back());
+    free_.pop_back();
+    return brush;
   }
 
   const Job& job_;
@@ -168,7 +161,7 @@ class Brushes {
 
 Picture empty_picture(const Job& job) {
   const Size size = job.size();
-  const std::size_t pixels = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
+  const std::size_t pixels = pixels_of(size);
   Picture picture;
   picture.size = size;
   picture.values.resize(3 * pixels);
@@ -188,8 +181,7 @@ void place(const Tile& tile, const TileResult& result, Picture& picture) {
   const double* number = result.numbers.data();
   for (int row = tile.top; row < tile.top + tile.height; ++row) {
     for (int column = tile.left; column < tile.left + tile.width; ++column) {
-      const std::size_t pixel = static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.size.width) +
-                                static_cast<std::size_t>(column);
+      const std::size_t pixel = pixel_at(picture.size, column, row);
       picture.shows[pixel] = static_cast<Shows>(*number++);
       for (std::vector<double>* plane : {&picture.values, &picture.lower, &picture.upper}) {
         if (plane->empty()) continue;
@@ -227,10 +219,7 @@ void add_margin(int width, Picture& picture) {
   constexpr std::array<std::array<int, 2>, 8> kBeside = {
       {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
   Layer& margin = picture.layers.emplace_back(Layer{"margin", true, std::vector<double>(picture.pixels())});
-  const auto texel = [&](int column, int row) {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.size.width) +
-           static_cast<std::size_t>(column);
-  };
+  const auto texel = [&](int column, int row) { return pixel_at(picture.size, column, row); };
   const auto has_value = [&](std::size_t i) { return picture.shows[i] != Shows::kNothing || margin.values[i] > 0.0; };
   std::vector<std::array<std::size_t, 2>> copied(1);  // from, to
   for (int step = 1; step <= width && !copied.empty(); ++step) {

@@ -12,6 +12,7 @@
 #include "exr/exr_file.h"
 #include "files/file.h"
 #include "kernel/float_environment.h"
+#include "render/job.h"
 #include "text/escape.h"
 #include "text/names.h"
 #include "text/refuse.h"
@@ -120,10 +121,8 @@ bool write(png_structp png, png_infop info, const Colours& colours, const std::v
   png_set_text(png, info, texts.data(), static_cast<int>(texts.size()));
   png_set_compression_level(png, 9);
   png_write_info(png, info);
-  for (int row = 0; row < colours.size.height; ++row) {
-    png_write_row(
-        png, colours.bytes.data() + 3 * static_cast<std::size_t>(row) * static_cast<std::size_t>(colours.size.width));
-  }
+  for (int row = 0; row < colours.size.height; ++row)
+    png_write_row(png, &colours.bytes[3 * pixel_at(colours.size, 0, row)]);
   png_write_end(png, nullptr);
   return true;
 }
@@ -154,25 +153,19 @@ namespace {
 constexpr std::uint8_t kPaper = 255;
 constexpr int kGap = 6;  // between pictures
 
-// The place of a pixel in the bytes of a picture.
-std::ptrdiff_t place(const Colours& picture, int column, int row) {
-  return 3 * (static_cast<std::ptrdiff_t>(row) * picture.size.width + column);
-}
-
 Colours empty_sheet(std::span<const Colours> pictures) {
   Size size{-kGap, 0};
   for (const Colours& picture : pictures) {
     size.width += picture.size.width + kGap;
     size.height = std::max(size.height, picture.size.height);
   }
-  const std::size_t pixels = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
-  return {size, std::vector<std::uint8_t>(3 * pixels, kPaper)};
+  return {size, std::vector<std::uint8_t>(3 * pixels_of(size), kPaper)};
 }
 
 void paste(const Colours& picture, int left, Colours& sheet) {
   for (int row = 0; row < picture.size.height; ++row) {
-    std::copy_n(picture.bytes.begin() + place(picture, 0, row), 3 * picture.size.width,
-                sheet.bytes.begin() + place(sheet, left, row));
+    std::copy_n(&picture.bytes[3 * pixel_at(picture.size, 0, row)], 3 * picture.size.width,
+                &sheet.bytes[3 * pixel_at(sheet.size, left, row)]);
   }
 }
 

@@ -224,15 +224,157 @@ class TouchFinder {
     return finding;
   }
 
-  Finding of_missing_bottoms();
-  void find_floors(const ClosedSurface& surface, PatchId patch, Touches& touches) const;
-  Finding of_overlapping_solids();
-  [[nodiscard]] bool overlap(std::uint32_t a, std::uint32_t b);
-  [[nodiscard]] bool has_points_inside(std::uint32_t a, std::uint32_t b, const Box& common);
-  [[nodiscard]] bool is_pierced(std::uint32_t a, std::uint32_t b, const Box& common);
-  [[nodiscard]] bool pierces(const Vec3& from, const Vec3& to, std::uint32_t piece) const;
-  [[nodiscard]] bool is_inside(std::uint32_t solid, const Vec3& point);
-  [[nodiscard]] bool is_in_a_hollow(std::uint32_t a, std::uint32_t b, const Vec3& point);
+  Finding of_missing_bottoms() {
+    const ClosedSurfaces surfaces(scene_, ClosedSurfaces::Edges::kCutAtJunctions);
+    Touches touches;
+    std::set<std::uint32_t> known;
+    for (std::uint32_t piece = 0; !surfaces.empty() && piece < scene_.pieces().size(); ++piece) {
+      const std::uint32_t of = surfaces.of_piece(piece);
+      if (of == ClosedSurfaces::kNone || !known.insert(of).second) continue;
+      const ClosedSurface& surface = surfaces.surfaces()[of];
+      if (surface.rim && !surface.turned_inside_out) find_floors(surface, patch_of(scene_, piece).patch, touches);
+    }
+    Finding finding = finding_of(Kind::kNoBottom, touches, [](const auto& block, const auto& floor, const Touch&) {
+      return block + " stands on " + floor + " without a bottom";
+    });
+    finding.words.why =
+        "what is under it is not buried: it counts in the area of the floor, and sees the backs of the block";
+    finding.words.suggestion = "to have it buried, give the block a bottom whose front looks down";
+    return finding;
+  }
+
+  // The faces that the surface stands on: they hold points just inside the hole.
+  void find_floors(const ClosedSurface& surface, PatchId patch, Touches& touches) const {
+    const auto& [a, b, c] = surface.rim->plane;
+    const Vec3 up = kernel::unit(cross(difference(b, a), difference(c, a)));
+    const kernel::PlaneThrough plane(a, b, c);
+    for (const auto& [from, to] : surface.rim->edges) {
+      const Vec3 edge = difference(vertex(to), vertex(from)), inward = cross(up, edge);
+      const Vec3 point = kernel::along(kernel::along(vertex(from), edge, 0.5), inward, 1e-3);
+      for_each_near({point, point}, reach(), [&](std::uint32_t piece) {
+        if (!is_in(plane, piece) || dot(sight_.normal(piece), up) <= 0.0) return;
+        const Vec3 before = kernel::along(point, up, 1.0);
+        const Vec3 down{-2.0 * up.x, -2.0 * up.y, -2.0 * up.z};
+        if (sight_.meets(piece, before, down)) touches[{patch, patch_of(scene_, piece).patch}].area = 1.0;
+      });
+    }
+  }
+
+  Finding of_overlapping_solids() {
+    std::vector<Box> boxes;
+    std::vector<std::uint32_t> ids;
+    for (std::uint32_t s = 0; s < solids_.all().size(); ++s) {
+      if (solids_.all()[s].sign <= 0) continue;
+      boxes.push_back(solids_.all()[s].box);
+      ids.push_back(s);
+    }
+    Touches touches;
+    const ShaftTree tree(boxes, ids);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const std::uint32_t a = ids[i];
+      tree.visit_where([&](const Box& node, std::size_t) { return meet(node, boxes[i], 0.0); },
+                       [&](std::uint32_t b, std::size_t) {
+                         if (b <= a || visits_ > kMostTrials || !overlap(a, b)) return;
+                         const auto first = [&](std::uint32_t s) { return solids_.all()[s].pieces.front(); };
+                         const Box common = common_of(boxes[i], solids_.all()[b].box);
+                         touches[patches_of(scene_, first(a), first(b))].area =
+                             kernel::distance(common.low, common.high);
+                       });
+    }
+    Finding finding =
+        finding_of(Kind::kOverlappingSolids, touches, [](const auto& one, const auto& other, const Touch&) {
+          return one == other ? "two solids of " + one + " overlap" : one + " and " + other + " overlap";
+        });
+    finding.words.why =
+        "closed solids share a part of space, and the faces inside it are not buried, but see the backs of the other "
+        "solid";
+    finding.words.suggestion = "move them apart, or cut off what lies inside";
+    return finding;
+  }
+
+  [[nodiscard]] bool overlap(std::uint32_t a, std::uint32_t b) {
+    ++visits_;
+    const Box common = common_of(solids_.all()[a].box, solids_.all()[b].box);
+    const Vec3 size = difference(common.high, common.low);
+    if (!(std::min({size.x, size.y, size.z}) > reach())) return false;
+    return has_points_inside(a, b, common) || has_points_inside(b, a, common) || is_pierced(a, b, common) ||
+           is_pierced(b, a, common);
+  }
+
+  // Points just behind some faces of the first solid.
+  [[nodiscard]] bool has_points_inside(std::uint32_t a, std::uint32_t b, const Box& common) {
+    constexpr std::size_t kPieces = 16;
+    std::vector<std::uint32_t> pieces;
+    for (const std::uint32_t piece : solids_.all()[a].pieces) {
+      if (meet(box(piece), common, 0.0)) pieces.push_back(piece);
+    }
+    for (const std::uint32_t piece : spread(pieces, kPieces)) {
+      const Box own = box(piece);
+      const double depth = -std::max(4.0 * reach(), 1e-4 * kernel::distance(own.low, own.high));
+      for (const Vec3& on : sight_.points_of(piece)) {
+        const Vec3 point = kernel::along(on, sight_.normal(piece), depth);
+        if (holds(common, {point, point}) && is_inside(b, point) && is_inside(a, point)) {
+          return !is_in_a_hollow(a, b, point);
+        }
+      }
+    }
+    return false;
+  }
+
+  // Whether an edge of the first one pierces a face of the other.
+  [[nodiscard]] bool is_pierced(std::uint32_t a, std::uint32_t b, const Box& common) {
+    for (const std::uint32_t piece : solids_.all()[a].pieces) {
+      if (!meet(box(piece), common, 0.0)) continue;
+      const auto corners = scene_.corners(scene_.pieces()[piece]);
+      for (std::size_t i = 0; i < corners.size() && visits_ < kMostTrials; ++i) {
+        const Vec3 &from = vertex(corners[i]), &to = vertex(corners[(i + 1) % corners.size()]);
+        Box edge{from, from};
+        edge.include(to);
+        bool found = false;
+        for_each_near(edge, 0.0, [&](std::uint32_t other) {
+          ++visits_;
+          found = found || (solids_.of_piece(other) == b && pierces(from, to, other));
+        });
+        if (found) return true;
+      }
+    }
+    return false;
+  }
+
+  // By more than what counts as touching.
+  [[nodiscard]] bool pierces(const Vec3& from, const Vec3& to, std::uint32_t piece) const {
+    const auto corners = scene_.corners(scene_.pieces()[piece]);
+    const Vec3& normal = sight_.normal(piece);
+    const double before = dot(normal, difference(from, vertex(corners[0])));
+    const double after = dot(normal, difference(to, vertex(corners[0])));
+    if (std::min(std::abs(before), std::abs(after)) < 4.0 * reach() || (before > 0.0) == (after > 0.0)) return false;
+    const Vec3 at = kernel::along(from, difference(to, from), before / (before - after));
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vec3 &p = vertex(corners[i]), &q = vertex(corners[(i + 1) % corners.size()]);
+      const Vec3 inward = kernel::unit(cross(normal, difference(q, p)));
+      if (dot(inward, difference(at, p)) < 4.0 * reach()) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool is_inside(std::uint32_t solid, const Vec3& point) {
+    const Solid& of = solids_.all()[solid];
+    if (triangles_ > kMostSolidAngles || !holds(of.box, {point, point})) return false;
+    constexpr double kHalfSphere = 6.283185307179586;
+    return std::abs(solid_angle_of(scene_, of.pieces, point, triangles_)) > kHalfSphere;
+  }
+
+  // Of one of them, with the other one in it.
+  [[nodiscard]] bool is_in_a_hollow(std::uint32_t a, std::uint32_t b, const Vec3& point) {
+    for (std::uint32_t s = 0; s < solids_.all().size(); ++s) {
+      const Solid& hollow = solids_.all()[s];
+      if (hollow.sign >= 0 || !is_inside(s, point)) continue;
+      for (const auto& [outer, inner] : {std::pair(a, b), {b, a}}) {
+        if (holds(solids_.all()[outer].box, hollow.box) && holds(hollow.box, solids_.all()[inner].box)) return true;
+      }
+    }
+    return false;
+  }
 
   const Scene& scene_;
   const Solids solids_;
@@ -240,160 +382,6 @@ class TouchFinder {
   Touches open_floors_, near_;
   std::uint64_t triangles_ = 0, visits_ = 0;
 };
-
-// --- blocks without bottoms ---
-
-// The faces that the surface stands on: they hold points just inside the hole.
-void TouchFinder::find_floors(const ClosedSurface& surface, PatchId patch, Touches& touches) const {
-  const auto& [a, b, c] = surface.rim->plane;
-  const Vec3 up = kernel::unit(cross(difference(b, a), difference(c, a)));
-  const kernel::PlaneThrough plane(a, b, c);
-  for (const auto& [from, to] : surface.rim->edges) {
-    const Vec3 edge = difference(vertex(to), vertex(from)), inward = cross(up, edge);
-    const Vec3 point = kernel::along(kernel::along(vertex(from), edge, 0.5), inward, 1e-3);
-    for_each_near({point, point}, reach(), [&](std::uint32_t piece) {
-      if (!is_in(plane, piece) || dot(sight_.normal(piece), up) <= 0.0) return;
-      const Vec3 before = kernel::along(point, up, 1.0);
-      const Vec3 down{-2.0 * up.x, -2.0 * up.y, -2.0 * up.z};
-      if (sight_.meets(piece, before, down)) touches[{patch, patch_of(scene_, piece).patch}].area = 1.0;
-    });
-  }
-}
-
-Finding TouchFinder::of_missing_bottoms() {
-  const ClosedSurfaces surfaces(scene_, ClosedSurfaces::Edges::kCutAtJunctions);
-  Touches touches;
-  std::set<std::uint32_t> known;
-  for (std::uint32_t piece = 0; !surfaces.empty() && piece < scene_.pieces().size(); ++piece) {
-    const std::uint32_t of = surfaces.of_piece(piece);
-    if (of == ClosedSurfaces::kNone || !known.insert(of).second) continue;
-    const ClosedSurface& surface = surfaces.surfaces()[of];
-    if (surface.rim && !surface.turned_inside_out) find_floors(surface, patch_of(scene_, piece).patch, touches);
-  }
-  Finding finding = finding_of(Kind::kNoBottom, touches, [](const auto& block, const auto& floor, const Touch&) {
-    return block + " stands on " + floor + " without a bottom";
-  });
-  finding.words.why =
-      "what is under it is not buried: it counts in the area of the floor, and sees the backs of the block";
-  finding.words.suggestion = "to have it buried, give the block a bottom whose front looks down";
-  return finding;
-}
-
-// --- solids that overlap ---
-
-Finding TouchFinder::of_overlapping_solids() {
-  std::vector<Box> boxes;
-  std::vector<std::uint32_t> ids;
-  for (std::uint32_t s = 0; s < solids_.all().size(); ++s) {
-    if (solids_.all()[s].sign <= 0) continue;
-    boxes.push_back(solids_.all()[s].box);
-    ids.push_back(s);
-  }
-  Touches touches;
-  const ShaftTree tree(boxes, ids);
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const std::uint32_t a = ids[i];
-    tree.visit_where([&](const Box& node, std::size_t) { return meet(node, boxes[i], 0.0); },
-                     [&](std::uint32_t b, std::size_t) {
-                       if (b <= a || visits_ > kMostTrials || !overlap(a, b)) return;
-                       const auto first = [&](std::uint32_t s) { return solids_.all()[s].pieces.front(); };
-                       const Box common = common_of(boxes[i], solids_.all()[b].box);
-                       touches[patches_of(scene_, first(a), first(b))].area = kernel::distance(common.low, common.high);
-                     });
-  }
-  Finding finding = finding_of(Kind::kOverlappingSolids, touches, [](const auto& one, const auto& other, const Touch&) {
-    return one == other ? "two solids of " + one + " overlap" : one + " and " + other + " overlap";
-  });
-  finding.words.why =
-      "closed solids share a part of space, and the faces inside it are not buried, but see the backs of the other "
-      "solid";
-  finding.words.suggestion = "move them apart, or cut off what lies inside";
-  return finding;
-}
-
-bool TouchFinder::overlap(std::uint32_t a, std::uint32_t b) {
-  ++visits_;
-  const Box common = common_of(solids_.all()[a].box, solids_.all()[b].box);
-  const Vec3 size = difference(common.high, common.low);
-  if (!(std::min({size.x, size.y, size.z}) > reach())) return false;
-  return has_points_inside(a, b, common) || has_points_inside(b, a, common) || is_pierced(a, b, common) ||
-         is_pierced(b, a, common);
-}
-
-// Points just behind some faces of the first solid.
-bool TouchFinder::has_points_inside(std::uint32_t a, std::uint32_t b, const Box& common) {
-  constexpr std::size_t kPieces = 16;
-  std::vector<std::uint32_t> pieces;
-  for (const std::uint32_t piece : solids_.all()[a].pieces) {
-    if (meet(box(piece), common, 0.0)) pieces.push_back(piece);
-  }
-  for (const std::uint32_t piece : spread(pieces, kPieces)) {
-    const Box own = box(piece);
-    const double depth = -std::max(4.0 * reach(), 1e-4 * kernel::distance(own.low, own.high));
-    for (const Vec3& on : sight_.points_of(piece)) {
-      const Vec3 point = kernel::along(on, sight_.normal(piece), depth);
-      if (holds(common, {point, point}) && is_inside(b, point) && is_inside(a, point)) {
-        return !is_in_a_hollow(a, b, point);
-      }
-    }
-  }
-  return false;
-}
-
-// Whether an edge of the first one pierces a face of the other.
-bool TouchFinder::is_pierced(std::uint32_t a, std::uint32_t b, const Box& common) {
-  for (const std::uint32_t piece : solids_.all()[a].pieces) {
-    if (!meet(box(piece), common, 0.0)) continue;
-    const auto corners = scene_.corners(scene_.pieces()[piece]);
-    for (std::size_t i = 0; i < corners.size() && visits_ < kMostTrials; ++i) {
-      const Vec3 &from = vertex(corners[i]), &to = vertex(corners[(i + 1) % corners.size()]);
-      Box edge{from, from};
-      edge.include(to);
-      bool found = false;
-      for_each_near(edge, 0.0, [&](std::uint32_t other) {
-        ++visits_;
-        found = found || (solids_.of_piece(other) == b && pierces(from, to, other));
-      });
-      if (found) return true;
-    }
-  }
-  return false;
-}
-
-// By more than what counts as touching.
-bool TouchFinder::pierces(const Vec3& from, const Vec3& to, std::uint32_t piece) const {
-  const auto corners = scene_.corners(scene_.pieces()[piece]);
-  const Vec3& normal = sight_.normal(piece);
-  const double before = dot(normal, difference(from, vertex(corners[0])));
-  const double after = dot(normal, difference(to, vertex(corners[0])));
-  if (std::min(std::abs(before), std::abs(after)) < 4.0 * reach() || (before > 0.0) == (after > 0.0)) return false;
-  const Vec3 at = kernel::along(from, difference(to, from), before / (before - after));
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vec3 &p = vertex(corners[i]), &q = vertex(corners[(i + 1) % corners.size()]);
-    const Vec3 inward = kernel::unit(cross(normal, difference(q, p)));
-    if (dot(inward, difference(at, p)) < 4.0 * reach()) return false;
-  }
-  return true;
-}
-
-bool TouchFinder::is_inside(std::uint32_t solid, const Vec3& point) {
-  const Solid& of = solids_.all()[solid];
-  if (triangles_ > kMostSolidAngles || !holds(of.box, {point, point})) return false;
-  constexpr double kHalfSphere = 6.283185307179586;
-  return std::abs(solid_angle_of(scene_, of.pieces, point, triangles_)) > kHalfSphere;
-}
-
-// Of one of them, with the other one in it.
-bool TouchFinder::is_in_a_hollow(std::uint32_t a, std::uint32_t b, const Vec3& point) {
-  for (std::uint32_t s = 0; s < solids_.all().size(); ++s) {
-    const Solid& hollow = solids_.all()[s];
-    if (hollow.sign >= 0 || !is_inside(s, point)) continue;
-    for (const auto& [outer, inner] : {std::pair(a, b), {b, a}}) {
-      if (holds(solids_.all()[outer].box, hollow.box) && holds(hollow.box, solids_.all()[inner].box)) return true;
-    }
-  }
-  return false;
-}
 
 }  // namespace
 

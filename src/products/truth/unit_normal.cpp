@@ -6,8 +6,6 @@
 // The values 0 and +-1 are no ties.
 #include "truth/unit_normal.h"
 
-#include <cmath>
-
 #include "exactff/enclosure.h"
 #include "kernel/ball.h"
 #include "kernel/expect.h"

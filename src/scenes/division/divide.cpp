@@ -38,43 +38,6 @@ using kernel::RationalVec3;
 // One part in 10^9 is allowed, so that roundings of a length add no cell.
 constexpr double kTolerance = 1e-9;
 
-// The vertices of a scene, and those that cells add.
-class CutPoints {
- public:
-  CutPoints(std::span<const Vec3> vertices, double length)
-      : vertices_(vertices.begin(), vertices.end()), length_(length) {}
-
-  [[nodiscard]] const Vec3& operator[](std::uint32_t vertex) const { return vertices_[vertex]; }
-  [[nodiscard]] std::span<const Vec3> all() const { return vertices_; }
-  [[nodiscard]] double length() const { return length_; }
-
-  // The fewest equal parts of a segment that are not longer than LENGTH.
-  [[nodiscard]] std::size_t parts(std::uint32_t a, std::uint32_t b) const;
-  // New vertices between the two, in the order from a to b, that cut the segment into these parts. They are the same
-  // in the other direction: of n parts, the k-th ends at p + (q - p) k / n, rounded once, where p is the end that comes
-  // first by x, then y, then z.
-  std::vector<std::uint32_t> between(std::uint32_t a, std::uint32_t b);
-
-  // Of a new vertex: it lies between these, at this share of the way.
-  struct Origin {
-    std::uint32_t from = 0, to = 0;
-    double share = 0.0;
-  };
-  [[nodiscard]] const Origin* origin(std::uint32_t vertex) const {
-    const std::size_t before = vertices_.size() - origins_.size();
-    return vertex < before ? nullptr : &origins_[vertex - before];
-  }
-
-  // The largest distance of a point made by between() from its exact place.
-  [[nodiscard]] double largest_displacement() const { return largest_displacement_; }
-
- private:
-  std::vector<Vec3> vertices_;
-  std::vector<Origin> origins_;  // of the last vertices
-  double length_;
-  double largest_displacement_ = 0.0;
-};
-
 bool comes_before(const Vec3& a, const Vec3& b) { return std::tuple(a.x, a.y, a.z) < std::tuple(b.x, b.y, b.z); }
 
 // Scaled so that the square is about 1. Positive unless the square is 0.
@@ -105,28 +68,62 @@ Vec3 difference_over(const Vec3& to, const Vec3& from, double length) {
   return {quotient(to.x, from.x), quotient(to.y, from.y), quotient(to.z, from.z)};
 }
 
-std::size_t CutPoints::parts(std::uint32_t a, std::uint32_t b) const {
-  const double ratio = kernel::distance(difference_over(vertices_[b], vertices_[a], length_), {});
-  return std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(ratio * (1.0 - kTolerance))));
-}
+// The vertices of a scene, and those that cells add.
+class CutPoints {
+ public:
+  CutPoints(std::span<const Vec3> vertices, double length)
+      : vertices_(vertices.begin(), vertices.end()), length_(length) {}
 
-std::vector<std::uint32_t> CutPoints::between(std::uint32_t a, std::uint32_t b) {
-  const bool turned = comes_before(vertices_[b], vertices_[a]);
-  const Vec3 p = vertices_[turned ? b : a], q = vertices_[turned ? a : b];
-  const std::size_t n = parts(a, b);
-  std::vector<std::uint32_t> made;
-  for (std::size_t k = 1; k < n; ++k) {
-    const RationalVec3 exact = point_of_segment(p, q, k, n);
-    const Vec3 rounded = nearest(exact);
-    const RationalVec3 off = kernel::to_rational(rounded) - exact;
-    largest_displacement_ = std::max(largest_displacement_, root_of(dot(off, off)));
-    made.push_back(static_cast<std::uint32_t>(vertices_.size()));
-    vertices_.push_back(rounded);
-    origins_.push_back({turned ? b : a, turned ? a : b, static_cast<double>(k) / static_cast<double>(n)});
+  [[nodiscard]] const Vec3& operator[](std::uint32_t vertex) const { return vertices_[vertex]; }
+  [[nodiscard]] std::span<const Vec3> all() const { return vertices_; }
+  [[nodiscard]] double length() const { return length_; }
+
+  // The fewest equal parts of a segment that are not longer than LENGTH.
+  [[nodiscard]] std::size_t parts(std::uint32_t a, std::uint32_t b) const {
+    const double ratio = kernel::distance(difference_over(vertices_[b], vertices_[a], length_), {});
+    return std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(ratio * (1.0 - kTolerance))));
   }
-  if (turned) std::ranges::reverse(made);
-  return made;
-}
+
+  // New vertices between the two, in the order from a to b, that cut the segment into these parts. They are the same
+  // in the other direction: of n parts, the k-th ends at p + (q - p) k / n, rounded once, where p is the end that comes
+  // first by x, then y, then z.
+  std::vector<std::uint32_t> between(std::uint32_t a, std::uint32_t b) {
+    const bool turned = comes_before(vertices_[b], vertices_[a]);
+    const Vec3 p = vertices_[turned ? b : a], q = vertices_[turned ? a : b];
+    const std::size_t n = parts(a, b);
+    std::vector<std::uint32_t> made;
+    for (std::size_t k = 1; k < n; ++k) {
+      const RationalVec3 exact = point_of_segment(p, q, k, n);
+      const Vec3 rounded = nearest(exact);
+      const RationalVec3 off = kernel::to_rational(rounded) - exact;
+      largest_displacement_ = std::max(largest_displacement_, root_of(dot(off, off)));
+      made.push_back(static_cast<std::uint32_t>(vertices_.size()));
+      vertices_.push_back(rounded);
+      origins_.push_back({turned ? b : a, turned ? a : b, static_cast<double>(k) / static_cast<double>(n)});
+    }
+    if (turned) std::ranges::reverse(made);
+    return made;
+  }
+
+  // Of a new vertex: it lies between these, at this share of the way.
+  struct Origin {
+    std::uint32_t from = 0, to = 0;
+    double share = 0.0;
+  };
+  [[nodiscard]] const Origin* origin(std::uint32_t vertex) const {
+    const std::size_t before = vertices_.size() - origins_.size();
+    return vertex < before ? nullptr : &origins_[vertex - before];
+  }
+
+  // The largest distance of a point made by between() from its exact place.
+  [[nodiscard]] double largest_displacement() const { return largest_displacement_; }
+
+ private:
+  std::vector<Vec3> vertices_;
+  std::vector<Origin> origins_;  // of the last vertices
+  double length_;
+  double largest_displacement_ = 0.0;
+};
 
 // The distance of a point from the plane through three others, computed exactly and rounded: 0 only if it is in it.
 // Smaller than all doubles, it is the smallest positive one.
@@ -164,17 +161,103 @@ bool is_planar(const CutPoints& points, std::span<const std::uint32_t> polygon) 
 class EdgeCuts {
  public:
   // Adds the points of all edges to `points`, whose first vertices are those of the scene.
-  EdgeCuts(const Scene& scene, CutPoints& points);
+  EdgeCuts(const Scene& scene, CutPoints& points) : scene_(scene), points_(points) {
+    const std::span<const std::uint32_t> place = places(scene);
+    std::vector<Ends> edges;
+    for (const Piece& piece : scene.pieces()) {
+      const std::span<const std::uint32_t> corners = scene.corners(piece);
+      for (std::size_t c = 0; c < corners.size(); ++c) {
+        const std::uint32_t a = place[corners[c]], b = place[corners[(c + 1) % corners.size()]];
+        corners_[0].push_back(a);
+        edges.push_back(std::minmax(a, b));
+      }
+    }
+    corners_[1] = corners_[2] = corners_[0];
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<std::uint32_t>& sorted = corners_[axis];
+      std::ranges::sort(sorted, {}, [&](std::uint32_t v) { return std::pair(kernel::coordinate(points[v], axis), v); });
+      sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+    }
+    std::ranges::sort(edges);
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    for (const Ends& ends : edges) of_edges_.emplace(ends, cut(ends));
+  }
 
   // A piece with the points of its edges among its corners. All are places.
-  [[nodiscard]] std::vector<std::uint32_t> outline(const Piece& piece) const;
+  [[nodiscard]] std::vector<std::uint32_t> outline(const Piece& piece) const {
+    const std::span<const std::uint32_t> place = places(scene_), corners = scene_.corners(piece);
+    std::vector<std::uint32_t> all;
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const std::uint32_t a = place[corners[c]], b = place[corners[(c + 1) % corners.size()]];
+      all.push_back(a);
+      const std::vector<std::uint32_t>& points = of_edges_.at(std::minmax(a, b));
+      if (a < b) {
+        all.insert(all.end(), points.begin(), points.end());
+      } else {
+        all.insert(all.end(), points.rbegin(), points.rend());
+      }
+    }
+    return all;
+  }
 
  private:
   using Ends = std::pair<std::uint32_t, std::uint32_t>;  // the lower place first
 
-  [[nodiscard]] std::vector<std::uint32_t> junctions(const Ends& ends) const;
-  [[nodiscard]] std::vector<std::uint32_t> cut(const Ends& ends);
-  [[nodiscard]] std::span<const std::uint32_t> part(std::uint32_t from, std::uint32_t to);
+  // In the order from the first end. Of the corners within the range of one coordinate, the axis with the fewest.
+  [[nodiscard]] std::vector<std::uint32_t> junctions(const Ends& ends) const {
+    const Vec3 a = points_[ends.first], b = points_[ends.second];
+    std::span<const std::uint32_t> fewest = corners_[0];
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto at = [&](std::uint32_t v) { return kernel::coordinate(points_[v], axis); };
+      const auto [low, high] = std::minmax({kernel::coordinate(a, axis), kernel::coordinate(b, axis)});
+      const auto first = std::ranges::lower_bound(corners_[axis], low, {}, at);
+      const auto last = std::ranges::upper_bound(corners_[axis], high, {}, at);
+      if (static_cast<std::size_t>(last - first) < fewest.size()) fewest = {first, last};
+    }
+    const auto within = [](double u, double from, double to) {
+      return std::min(from, to) <= u && u <= std::max(from, to);
+    };
+    std::vector<std::uint32_t> found;
+    for (const std::uint32_t v : fewest) {
+      const Vec3 x = points_[v];
+      if (v == ends.first || v == ends.second || !within(x.x, a.x, b.x) || !within(x.y, a.y, b.y) ||
+          !within(x.z, a.z, b.z)) {
+        continue;
+      }
+      if (are_straight(a, x, b)) found.push_back(v);
+    }
+    const auto from_a = [&](std::uint32_t v) {
+      const Vec3 x = points_[v];
+      return std::tuple(a.x < b.x ? x.x : -x.x, a.y < b.y ? x.y : -x.y, a.z < b.z ? x.z : -x.z);
+    };
+    std::ranges::sort(found, {}, from_a);
+    return found;
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> cut(const Ends& ends) {
+    if (points_.parts(ends.first, ends.second) == 1) return {};
+    std::vector<std::uint32_t> stops = junctions(ends), all;
+    stops.push_back(ends.second);
+    std::uint32_t from = ends.first;
+    for (const std::uint32_t to : stops) {
+      const std::span<const std::uint32_t> points = part(from, to);
+      if (from < to) {
+        all.insert(all.end(), points.begin(), points.end());
+      } else {
+        all.insert(all.end(), points.rbegin(), points.rend());
+      }
+      if (to != ends.second) all.push_back(to);
+      from = to;
+    }
+    return all;
+  }
+
+  [[nodiscard]] std::span<const std::uint32_t> part(std::uint32_t from, std::uint32_t to) {
+    const Ends ends = std::minmax(from, to);
+    const auto [place, is_new] = of_parts_.try_emplace(ends);
+    if (is_new) place->second = points_.between(ends.first, ends.second);
+    return place->second;
+  }
 
   const Scene& scene_;
   CutPoints& points_;
@@ -182,100 +265,6 @@ class EdgeCuts {
   std::map<Ends, std::vector<std::uint32_t>> of_parts_;  // the points of edges without junctions, from the lower place
   std::map<Ends, std::vector<std::uint32_t>> of_edges_;  // the points of all edges, with junctions
 };
-
-EdgeCuts::EdgeCuts(const Scene& scene, CutPoints& points) : scene_(scene), points_(points) {
-  const std::span<const std::uint32_t> place = places(scene);
-  std::vector<Ends> edges;
-  for (const Piece& piece : scene.pieces()) {
-    const std::span<const std::uint32_t> corners = scene.corners(piece);
-    for (std::size_t c = 0; c < corners.size(); ++c) {
-      const std::uint32_t a = place[corners[c]], b = place[corners[(c + 1) % corners.size()]];
-      corners_[0].push_back(a);
-      edges.push_back(std::minmax(a, b));
-    }
-  }
-  corners_[1] = corners_[2] = corners_[0];
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<std::uint32_t>& sorted = corners_[axis];
-    std::ranges::sort(sorted, {}, [&](std::uint32_t v) { return std::pair(kernel::coordinate(points[v], axis), v); });
-    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-  }
-  std::ranges::sort(edges);
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  for (const Ends& ends : edges) of_edges_.emplace(ends, cut(ends));
-}
-
-// In the order from the first end. Of the corners within the range of one coordinate, the axis with the fewest.
-std::vector<std::uint32_t> EdgeCuts::junctions(const Ends& ends) const {
-  const Vec3 a = points_[ends.first], b = points_[ends.second];
-  std::span<const std::uint32_t> fewest = corners_[0];
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto at = [&](std::uint32_t v) { return kernel::coordinate(points_[v], axis); };
-    const auto [low, high] = std::minmax({kernel::coordinate(a, axis), kernel::coordinate(b, axis)});
-    const auto first = std::ranges::lower_bound(corners_[axis], low, {}, at);
-    const auto last = std::ranges::upper_bound(corners_[axis], high, {}, at);
-    if (static_cast<std::size_t>(last - first) < fewest.size()) fewest = {first, last};
-  }
-  const auto within = [](double u, double from, double to) {
-    return std::min(from, to) <= u && u <= std::max(from, to);
-  };
-  std::vector<std::uint32_t> found;
-  for (const std::uint32_t v : fewest) {
-    const Vec3 x = points_[v];
-    if (v == ends.first || v == ends.second || !within(x.x, a.x, b.x) || !within(x.y, a.y, b.y) ||
-        !within(x.z, a.z, b.z)) {
-      continue;
-    }
-    if (are_straight(a, x, b)) found.push_back(v);
-  }
-  const auto from_a = [&](std::uint32_t v) {
-    const Vec3 x = points_[v];
-    return std::tuple(a.x < b.x ? x.x : -x.x, a.y < b.y ? x.y : -x.y, a.z < b.z ? x.z : -x.z);
-  };
-  std::ranges::sort(found, {}, from_a);
-  return found;
-}
-
-std::span<const std::uint32_t> EdgeCuts::part(std::uint32_t from, std::uint32_t to) {
-  const Ends ends = std::minmax(from, to);
-  const auto [place, is_new] = of_parts_.try_emplace(ends);
-  if (is_new) place->second = points_.between(ends.first, ends.second);
-  return place->second;
-}
-
-std::vector<std::uint32_t> EdgeCuts::cut(const Ends& ends) {
-  if (points_.parts(ends.first, ends.second) == 1) return {};
-  std::vector<std::uint32_t> stops = junctions(ends), all;
-  stops.push_back(ends.second);
-  std::uint32_t from = ends.first;
-  for (const std::uint32_t to : stops) {
-    const std::span<const std::uint32_t> points = part(from, to);
-    if (from < to) {
-      all.insert(all.end(), points.begin(), points.end());
-    } else {
-      all.insert(all.end(), points.rbegin(), points.rend());
-    }
-    if (to != ends.second) all.push_back(to);
-    from = to;
-  }
-  return all;
-}
-
-std::vector<std::uint32_t> EdgeCuts::outline(const Piece& piece) const {
-  const std::span<const std::uint32_t> place = places(scene_), corners = scene_.corners(piece);
-  std::vector<std::uint32_t> all;
-  for (std::size_t c = 0; c < corners.size(); ++c) {
-    const std::uint32_t a = place[corners[c]], b = place[corners[(c + 1) % corners.size()]];
-    all.push_back(a);
-    const std::vector<std::uint32_t>& points = of_edges_.at(std::minmax(a, b));
-    if (a < b) {
-      all.insert(all.end(), points.begin(), points.end());
-    } else {
-      all.insert(all.end(), points.rbegin(), points.rend());
-    }
-  }
-  return all;
-}
 
 // --- Cells ---
 

@@ -4,58 +4,129 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
 
+#include "files/numpy.h"
 #include "text/text_lines.h"
 
 namespace exactff::formats {
 namespace {
 
-enum class Kind { kUnsigned, kNumber, kBool, kString, kObject, kArray, kNull };
+using Json = nlohmann::json;
 
-constexpr std::array<std::string_view, 7> kKindNames = {"a whole number", "a number", "true or false", "a string",
-                                                        "an object",      "an array", "a value"};
+constexpr std::size_t kHead = 20;  // of a .glb file up to its JSON
+constexpr const char *kPrescribed = "glTF 2.0 prescribes it", *kAdvice = "correct it, or export the file again";
+
+struct Kind {
+  std::string_view name;
+  bool (Json::*holds)() const noexcept;
+};
+constexpr Kind kUnsigned{"a whole number", &Json::is_number_unsigned}, kNumber{"a number", &Json::is_number},
+    kBool{"true or false", &Json::is_boolean}, kString{"a string", &Json::is_string},
+    kObject{"an object", &Json::is_object}, kArray{"an array", &Json::is_array};
 
 // Members of the objects in an array of the file, or of what they hold; "" for members of the file itself.
 struct Members {
   std::string_view collection;
-  Kind kind;
+  const Kind* kind;
   bool in_array;  // each is an array of these
   std::string_view names;
 };
 
 constexpr std::array<Members, 19> kMembers = {{
-    {"", Kind::kObject, false, "asset"},
-    {"", Kind::kUnsigned, false, "scene"},
-    {"", Kind::kObject, true, "scenes nodes meshes accessors bufferViews buffers materials"},
-    {"", Kind::kString, true, "extensionsRequired"},
-    {"asset", Kind::kString, false, "version"},
-    {"scenes", Kind::kUnsigned, true, "nodes"},
-    {"nodes", Kind::kUnsigned, false, "mesh"},
-    {"nodes", Kind::kUnsigned, true, "children"},
-    {"nodes", Kind::kNumber, true, "matrix translation rotation scale"},
-    {"meshes", Kind::kObject, true, "primitives"},
-    {"meshes", Kind::kUnsigned, false, "POSITION TEXCOORD_0 TEXCOORD_1 material mode"},
-    {"accessors", Kind::kUnsigned, false, "bufferView byteOffset componentType count"},
-    {"accessors", Kind::kBool, false, "normalized"},
-    {"accessors", Kind::kObject, false, "sparse"},
-    {"bufferViews", Kind::kUnsigned, false, "buffer byteOffset byteLength byteStride"},
-    {"buffers", Kind::kUnsigned, false, "byteLength"},
-    {"materials", Kind::kBool, false, "doubleSided"},
-    {"materials", Kind::kObject, false, "pbrMetallicRoughness"},
-    {"materials", Kind::kNumber, true, "baseColorFactor emissiveFactor"},
+    {"", &kObject, false, "asset"},
+    {"", &kUnsigned, false, "scene"},
+    {"", &kObject, true, "scenes nodes meshes accessors bufferViews buffers materials"},
+    {"", &kString, true, "extensionsRequired"},
+    {"asset", &kString, false, "version"},
+    {"scenes", &kUnsigned, true, "nodes"},
+    {"nodes", &kUnsigned, false, "mesh"},
+    {"nodes", &kUnsigned, true, "children"},
+    {"nodes", &kNumber, true, "matrix translation rotation scale"},
+    {"meshes", &kObject, true, "primitives"},
+    {"meshes", &kUnsigned, false, "POSITION TEXCOORD_0 TEXCOORD_1 material mode"},
+    {"accessors", &kUnsigned, false, "bufferView byteOffset componentType count"},
+    {"accessors", &kBool, false, "normalized"},
+    {"accessors", &kObject, false, "sparse"},
+    {"bufferViews", &kUnsigned, false, "buffer byteOffset byteLength byteStride"},
+    {"buffers", &kUnsigned, false, "byteLength"},
+    {"materials", &kBool, false, "doubleSided"},
+    {"materials", &kObject, false, "pbrMetallicRoughness"},
+    {"materials", &kNumber, true, "baseColorFactor emissiveFactor"},
 }};
 
-bool has_word(std::string_view words, std::string_view wanted) {
-  for (std::string_view word = text::take_word(words); !word.empty(); word = text::take_word(words)) {
-    if (word == wanted) return true;
+// A value in the file. In arrays, its name is theirs.
+struct Place {
+  std::string path;             // "meshes[0].primitives[2].indices"
+  std::string_view root, name;  // the first and the last name in the path
+  std::size_t depth = 1;        // of objects and arrays around it
+  bool in_array = false;
+};
+
+void check_member(const Json& value, const Place& place, const Members& rule, MeshInput& input) {
+  constexpr std::uint64_t kMost = 0x7FFFFFFF, kMostBytes = std::uint64_t{1} << 53U;
+  const auto refuse = [&](const std::string& what) {
+    input.give_up({}, text::in_quotes(place.path, text::kShownName) + " is " + what, kPrescribed, kAdvice);
+  };
+  const Kind& wanted = rule.in_array && !place.in_array ? kArray : *rule.kind;
+  if (!(value.*wanted.holds)()) refuse("not " + std::string(wanted.name));
+  if (!value.is_number_unsigned()) return;
+  const auto number = value.get<std::uint64_t>();
+  if (number > (place.name.starts_with("byte") && place.name != "byteStride" ? kMostBytes : kMost))
+    refuse(std::to_string(number) + ", which is too large");
+}
+
+void check_form(const Json& value, const Place& place, MeshInput& input) {
+  const bool of_file = place.depth == 1 || (place.depth == 2 && place.in_array);
+  const auto* const rule = std::ranges::find_if(kMembers, [&](const Members& members) {
+    return members.collection == (of_file ? "" : place.root) &&
+           std::ranges::count(text::words(members.names), place.name) > 0;
+  });
+  if (rule != kMembers.end()) check_member(value, place, *rule, input);
+  constexpr std::size_t kDeepest = 100;
+  if (value.is_structured() && place.depth >= kDeepest)
+    input.give_up({}, "is nested deeper than 100 objects and arrays", kPrescribed, kAdvice);
+  const bool is_free = place.name == "extras" || place.name == "extensions";
+  const std::string_view root = is_free ? place.name : place.root;
+  if (value.is_array()) {
+    for (std::size_t i = 0; i < value.size(); ++i)
+      check_form(value[i], {place.path + '[' + std::to_string(i) + ']', root, place.name, place.depth + 1, true},
+                 input);
+  } else if (value.is_object()) {
+    for (const auto& [key, member] : value.items())
+      check_form(member, {place.path + '.' + key, root, key, place.depth + 1}, input);
   }
-  return false;
+}
+
+std::string_view json_of(std::string_view bytes, MeshInput& input) {
+  if (!bytes.starts_with("glTF")) return bytes;
+  const auto give_up = [&](const char* what, const char* why) {
+    input.give_up(at_byte(bytes.size()), what, why, "is the file complete?");
+  };
+  std::array<std::uint32_t, kHead / 4> head{};
+  if (bytes.size() >= kHead) files::read_little_endian(bytes, std::span<std::uint32_t>(head));
+  if (bytes.size() < kHead || head[3] > bytes.size() - kHead) {
+    give_up("the file ends within its JSON", "a .glb file begins with all of it");
+  }
+  if (head[2] > bytes.size()) give_up("the file ends before all that its head promises", "buffers are cut off");
+  return bytes.substr(kHead, head[3]);
+}
+
+Json parse(std::string_view json, bool is_text, MeshInput& input) {
+  try {
+    return Json::parse(json);
+  } catch (const Json::parse_error& error) {
+    const std::string_view before = json.substr(0, error.byte);
+    const auto lines = static_cast<std::size_t>(std::ranges::count(before, '\n'));
+    input.give_up(
+        is_text ? at_line(1 + lines) : at_byte(kHead + error.byte),
+        "is no JSON at " + text::in_quotes(before.substr(before.size() - std::min<std::size_t>(before.size(), 20))),
+        kPrescribed, kAdvice);
+  } catch (const Json::out_of_range&) {
+    input.give_up({}, "has a number beyond the range of doubles", kPrescribed, kAdvice);
+  }
 }
 
 struct BufferForm {
@@ -63,143 +134,22 @@ struct BufferForm {
   std::size_t length = 0;
 };
 
-// Reads the JSON without keeping it.
-class FormCheck : public nlohmann::json_sax<nlohmann::json> {
- public:
-  bool null() override { return value(Kind::kNull); }
-  bool boolean(bool) override { return value(Kind::kBool); }
-  bool number_integer(std::int64_t) override { return value(Kind::kNumber); }
-  bool number_unsigned(std::uint64_t number) override {
-    if (in("buffers") && name() == "byteLength" && !buffers.empty()) buffers.back().length = number;
-    return value(Kind::kUnsigned, number);
-  }
-  bool number_float(double, const std::string&) override { return value(Kind::kNumber); }
-  bool string(std::string& text) override {
-    if (in("buffers") && name() == "uri" && !buffers.empty()) buffers.back().is_file = !text.starts_with("data:");
-    return value(Kind::kString);
-  }
-  bool binary(binary_t&) override { return value(Kind::kNull); }
-  bool start_object(std::size_t) override {
-    const bool good = value(Kind::kObject) && open(false);
-    if (good && path_.size() == 3 && path_.front().key == "buffers") buffers.emplace_back();
-    return good;
-  }
-  bool key(std::string& key) override {
-    path_.back().key = key;
-    return true;
-  }
-  bool end_object() override { return close(); }
-  bool start_array(std::size_t) override { return value(Kind::kArray) && open(true); }
-  bool end_array() override { return close(); }
-  bool parse_error(std::size_t position, const std::string& token, const nlohmann::json::exception&) override {
-    if (fault.empty()) fault = "is no JSON before " + text::in_quotes(token);
-    fault_at = position;
-    return false;
-  }
-
+// Of the buffers of a file whose form is right.
+std::vector<BufferForm> checked_buffers(std::string_view bytes, MeshInput& input) {
+  const std::string_view text = json_of(bytes, input);
+  const Json file = parse(text, text.size() == bytes.size(), input);
+  if (!file.is_object()) input.give_up({}, "is no JSON object", kPrescribed, kAdvice);
+  for (const auto& [key, member] : file.items()) check_form(member, {key, key, key}, input);
   std::vector<BufferForm> buffers;
-  std::string fault;
-  std::size_t fault_at = 0;  // bytes before it; 0 if it is named by its path
-
- private:
-  struct Level {
-    bool is_array = false;
-    std::size_t count = 0;  // of elements begun
-    std::string key;
-  };
-
-  [[nodiscard]] bool in(std::string_view collection) const {
-    return path_.size() > 1 && ignored_from_ == 0 && path_.front().key == collection;
+  const auto all = file.find("buffers");
+  for (std::size_t b = 0; all != file.end() && b < all->size(); ++b) {
+    const Json& buffer = (*all)[b];
+    const auto uri = buffer.find("uri");
+    const bool is_text = uri != buffer.end() && uri->is_string();
+    buffers.push_back({is_text && !uri->get_ref<const std::string&>().starts_with("data:"),
+                       buffer.value("byteLength", std::size_t{0})});
   }
-  [[nodiscard]] std::string_view name() const {
-    for (std::size_t i = path_.size(); i-- > 0;) {
-      if (!path_[i].is_array) return path_[i].key;
-    }
-    return {};
-  }
-  // "meshes[0].primitives[2].indices"
-  [[nodiscard]] std::string place() const {
-    std::string text;
-    for (const Level& level : path_) {
-      text += level.is_array ? '[' + std::to_string(level.count - 1) + ']' : text.empty() ? level.key : '.' + level.key;
-    }
-    return text;
-  }
-
-  bool refuse(const std::string& what) {
-    fault = what;
-    return false;
-  }
-
-  bool value(Kind kind, std::uint64_t number = 0) {
-    if (path_.empty()) return kind == Kind::kObject || refuse("is no JSON object");
-    const bool in_array = path_.back().is_array;
-    if (in_array) ++path_.back().count;
-    if (ignored_from_ > 0) return true;
-    const bool of_file = path_.size() == 1 || (path_.size() == 2 && in_array);
-    const std::string_view collection = of_file ? std::string_view() : path_.front().key, name = this->name();
-    const auto* const rule = std::ranges::find_if(kMembers, [&](const Members& members) {
-      return members.collection == collection && has_word(members.names, name);
-    });
-    if (rule == kMembers.end()) return true;
-    const Kind wanted = rule->in_array && !in_array ? Kind::kArray : rule->kind;
-    if (kind != wanted && !(wanted == Kind::kNumber && kind == Kind::kUnsigned))
-      return refuse(text::in_quotes(place(), text::kShownName) + " is not " +
-                    std::string(kKindNames[static_cast<std::size_t>(wanted)]));
-    constexpr std::uint64_t kMost = 0x7FFFFFFF, kMostBytes = std::uint64_t{1} << 53U;
-    if (kind == Kind::kUnsigned && number > (name.starts_with("byte") && name != "byteStride" ? kMostBytes : kMost))
-      return refuse(text::in_quotes(place(), text::kShownName) + " is " + std::to_string(number) +
-                    ", which is too large");
-    return true;
-  }
-
-  bool open(bool is_array) {
-    constexpr std::size_t kDeepest = 100;
-    if (path_.size() == kDeepest) return refuse("is nested deeper than 100 objects and arrays");
-    if (ignored_from_ == 0 && (name() == "extras" || name() == "extensions")) ignored_from_ = path_.size();
-    path_.emplace_back().is_array = is_array;
-    return true;
-  }
-  bool close() {
-    path_.pop_back();
-    if (path_.size() == ignored_from_) ignored_from_ = 0;
-    return true;
-  }
-
-  std::vector<Level> path_;
-  std::size_t ignored_from_ = 0;  // the level in which `extras` or `extensions` is a member, if we are inside
-};
-
-constexpr std::size_t kHead = 20;  // of a .glb file up to its JSON
-
-std::string_view json_of(std::string_view bytes, MeshInput& input) {
-  if (!bytes.starts_with("glTF")) return bytes;
-  const auto length_at = [&](std::size_t place) {
-    std::uint32_t length = 0;
-    for (std::size_t i = place + 4; i-- > place;) length = length << 8U | static_cast<unsigned char>(bytes[i]);
-    return length;
-  };
-  const auto give_up = [&](const char* what, const char* why) {
-    input.give_up(at_byte(bytes.size()), what, why, "is the file complete?");
-  };
-  if (bytes.size() < kHead || length_at(12) > bytes.size() - kHead) {
-    give_up("the file ends within its JSON", "a .glb file begins with all of it");
-  }
-  if (length_at(8) > bytes.size()) give_up("the file ends before all that its head promises", "buffers are cut off");
-  return bytes.substr(kHead, length_at(12));
-}
-
-std::vector<BufferForm> check_form(std::string_view bytes, MeshInput& input) {
-  const std::string_view json = json_of(bytes, input);
-  FormCheck check;
-  if (nlohmann::json::sax_parse(json.begin(), json.end(), &check)) return std::move(check.buffers);
-  const bool is_text = json.size() == bytes.size();
-  const auto line =
-      1 + std::count(json.begin(), json.begin() + static_cast<long>(std::min(check.fault_at, json.size())), '\n');
-  input.give_up(check.fault_at == 0 ? FilePlace{}
-                : is_text           ? at_line(static_cast<std::size_t>(line))
-                                    : at_byte(kHead + check.fault_at),
-                check.fault, "glTF 2.0 prescribes it", "correct it, or export the file again");
+  return buffers;
 }
 
 // The files of buffers, one after the other; tinygltf reads them before all else. It asks for the path in the file,
@@ -224,7 +174,7 @@ struct BufferFiles {
       const std::string all = text::read_file(folder / name, "the file of the buffer");
       bytes.assign(all.begin(), all.end());
       bytes.resize(std::min(bytes.size(), buffers[next++].length));  // the rest is padding
-      input.read_from(folder / name);
+      input.builder().read_from(folder / name);
       return true;
     } catch (const InputError&) {
       missing = (folder / name).string();
@@ -266,7 +216,7 @@ tinygltf::Model load_gltf(std::string_view bytes, const std::filesystem::path& p
   if (bytes.size() > kMostBytes)
     input.give_up({}, "has more than 4 GiB", "tinygltf counts bytes in 32 bits",
                   "put the buffers into files of their own");
-  BufferFiles files{path.parent_path(), check_form(bytes, input), input};
+  BufferFiles files{path.parent_path(), checked_buffers(bytes, input), input};
   tinygltf::TinyGLTF reader;
   reader.SetImageLoader(no_image, nullptr);
   reader.SetFsCallbacks(callbacks(files));

@@ -23,9 +23,10 @@ std::optional<std::int64_t> whole_number(std::string_view word) {
   return value;
 }
 
-MeshInput::MeshInput(const std::filesystem::path& path, const SceneOptions& options, std::string kind)
+MeshInput::MeshInput(const std::filesystem::path& path, const SceneOptions& options, std::string kind,
+                     Materials materials)
     : file_(path.string()), options_(options), kind_(std::move(kind)), builder_(file_, options) {
-  builder_.add_material({std::string(kNoMaterial)});
+  if (materials == Materials::kNoneFirst) builder_.add_material({std::string(kNoMaterial)});
 }
 
 Problem MeshInput::problem(const FilePlace& place, std::string what, std::string why, std::string suggestion) const {
@@ -74,28 +75,20 @@ PatchId MeshInput::default_patch() {
   return *default_patch_;
 }
 
-void MeshInput::add_face(PatchId patch, MaterialId material, std::vector<std::vector<std::uint32_t>> rings,
-                         const FilePlace& place) {
+bool MeshInput::is_polygon(std::size_t corners, const FilePlace& place) {
+  if (corners >= 3 || options_.bad_faces != BadFaces::kReject) return true;
+  fail(place, "a face has " + text::counted(corners, "vertex", "vertices"), "a polygon has at least three",
+       "remove it, or skip bad faces with --skip-bad-faces");
+  return false;
+}
+
+void MeshInput::add_face(PatchId patch, MaterialId material, std::vector<std::uint32_t> ring, const FilePlace& place,
+                         std::vector<std::vector<std::uint32_t>> holes) {
   if (face_count_++ == kMostIndices)
     give_up(place, "more than 4294967295 faces", "indices have 32 bits", "split the scene");
-  if (rings.front().size() < 3 && options_.bad_faces == BadFaces::kReject) {
-    fail(place, "a face has " + text::counted(rings.front().size(), "vertex", "vertices"),
-         "a polygon has at least three", "remove it, or skip bad faces with --skip-bad-faces");
-    return;  // the scene will not be built, and a face takes more memory here than in the file
-  }
-  builder_.add_face(patch, material, std::move(rings), place.line);
-}
-
-void MeshInput::add_face(PatchId patch, std::vector<std::uint32_t> ring, const FilePlace& place) {
-  std::vector<std::vector<std::uint32_t>> rings;
-  rings.push_back(std::move(ring));
-  add_face(patch, no_material(), std::move(rings), place);
-}
-
-void MeshInput::warn_if_cut_off(const text::PlainLines& lines, std::size_t last_line) {
-  if (!lines.is_cut_off()) return;
-  warn(at_line(last_line), "the last line does not end with a newline", "the file may have been cut off there",
-       "add a newline if the file is complete");
+  if (!is_polygon(ring.size(), place)) return;  // there will be no scene, and a face takes more memory than in the file
+  holes.insert(holes.begin(), std::move(ring));
+  builder_.add_face(patch, material, std::move(holes), place.line);
 }
 
 Scene MeshInput::build() {
@@ -107,30 +100,18 @@ Scene MeshInput::build() {
 // --- Shared vertices ---
 
 std::uint32_t SharedVertices::vertex(const Vec3& position, const FilePlace& place) {
-  if (2 * positions_.size() >= slots_.size()) grow();
-  std::uint32_t& slot = slots_[slot_of(position)];
-  if (slot == 0) {
-    positions_.push_back(position);
-    slot = input_.add_vertex(position, place) + 1;
-  }
-  return slot - 1;
+  const auto [found, is_new] = numbers_.try_emplace(position);
+  if (is_new) found->second = input_.add_vertex(position, place);
+  return found->second;
 }
 
-std::size_t SharedVertices::slot_of(const Vec3& position) const {
-  std::uint64_t state = seed_;
+std::size_t HashOfPosition::operator()(const Vec3& position) const {
+  std::uint64_t state = seed;
   for (const double coordinate : {position.x, position.y, position.z}) {
     state = (state ^ std::bit_cast<std::uint64_t>(coordinate + 0.0)) * 0x9E3779B97F4A7C15U;
     state ^= state >> 32U;
   }
-  std::size_t at = state & (slots_.size() - 1);
-  while (slots_[at] != 0 && positions_[slots_[at] - 1] != position) at = (at + 1) & (slots_.size() - 1);
-  return at;
-}
-
-void SharedVertices::grow() {
-  slots_.assign(2 * slots_.size(), 0);
-  for (std::size_t i = 0; i < positions_.size(); ++i)
-    slots_[slot_of(positions_[i])] = static_cast<std::uint32_t>(i + 1);
+  return state;
 }
 
 }  // namespace exactff::formats

@@ -1,5 +1,4 @@
-// What the readers of PLY, STL, glTF, OFF and View3D files share: the scene being built, and the problems found so far;
-// and the readers of all formats.
+// What the readers of all formats share: the scene being built, and the problems found so far; and these readers.
 #pragma once
 
 #include <chrono>
@@ -9,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "exactff/scene.h"
@@ -33,11 +33,15 @@ inline FilePlace at_byte(std::size_t offset) { return {0, offset}; }
 
 class MeshInput {
  public:
+  enum class Materials { kNoneFirst, kOfReader };  // the first one is no_material(), or all are the reader's
+
   // `kind` completes "give ..." and "is it ...?": "a PLY file".
-  MeshInput(const std::filesystem::path& path, const SceneOptions& options, std::string kind);
+  MeshInput(const std::filesystem::path& path, const SceneOptions& options, std::string kind,
+            Materials materials = Materials::kNoneFirst);
 
   [[nodiscard]] const std::string& file() const { return file_; }
-  [[nodiscard]] const SceneOptions& options() const { return options_; }
+  [[nodiscard]] SceneBuilder& builder() { return builder_; }
+  [[nodiscard]] text::ProblemList& problems() { return problems_; }
   [[nodiscard]] std::size_t vertex_count() const { return builder_.vertex_count(); }
   [[nodiscard]] MaterialId no_material() const { return MaterialId{0}; }  // Kd 1, Ke 0
 
@@ -54,15 +58,18 @@ class MeshInput {
   PatchId patch(std::string_view name) { return builder_.patch(name); }
   PatchId default_patch();
   MaterialId material(Material material) { return builder_.add_material(std::move(material)); }
-  void add_face(PatchId patch, MaterialId material, std::vector<std::vector<std::uint32_t>> rings,
-                const FilePlace& place);
-  void add_face(PatchId patch, std::vector<std::uint32_t> ring, const FilePlace& place);
-  // Of the face added last.
-  void state_texture(int set, std::vector<TexturePoint> corners) { builder_.state_texture(set, std::move(corners)); }
-  void read_from(std::filesystem::path file) { builder_.read_from(std::move(file)); }
+  // False, with a problem, if it has fewer than three and bad faces are rejected.
+  bool is_polygon(std::size_t corners, const FilePlace& place);
+  void add_face(PatchId patch, MaterialId material, std::vector<std::uint32_t> ring, const FilePlace& place,
+                std::vector<std::vector<std::uint32_t>> holes = {});
 
   // Warns if the last line of a text has no end.
-  void warn_if_cut_off(const text::PlainLines& lines, std::size_t last_line);
+  template <class Lines>
+  void warn_if_cut_off(const Lines& lines, std::size_t last_line) {
+    if (!lines.is_cut_off()) return;
+    warn(at_line(last_line), "the last line does not end with a newline", "the file may have been cut off there",
+         "add a newline if the file is complete");
+  }
   // Throws the problems collected, or one if there are no faces.
   [[nodiscard]] Scene build();
 
@@ -81,25 +88,24 @@ class MeshInput {
 
 // --- Shared vertices ---
 
+struct HashOfPosition {
+  // Differs from run to run, so that no file can be made of positions of one hash. The numbers do not depend on it.
+  std::uint64_t seed = static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
+
+  std::size_t operator()(const Vec3& position) const;
+};
+
 // Vertices of files that repeat them for every triangle. Positions are one vertex if their doubles are equal, so 0 and
-// -0 are; in the order of their first appearance. A hash table with open addressing.
+// -0 are; in the order of their first appearance.
 class SharedVertices {
  public:
-  explicit SharedVertices(MeshInput& input) : input_(input), slots_(1024) {}
+  explicit SharedVertices(MeshInput& input) : input_(input) {}
 
   std::uint32_t vertex(const Vec3& position, const FilePlace& place);
 
  private:
-  // Where the position is, or the empty slot where it belongs.
-  [[nodiscard]] std::size_t slot_of(const Vec3& position) const;
-  void grow();
-
   MeshInput& input_;
-  std::vector<std::uint32_t> slots_;  // a number plus 1, or 0 if empty
-  std::vector<Vec3> positions_;
-  // Differs from run to run, so that no file can be made of positions that fall into one slot. The numbers do not
-  // depend on it.
-  std::uint64_t seed_ = static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
+  std::unordered_map<Vec3, std::uint32_t, HashOfPosition> numbers_;
 };
 
 // --- Several files ---

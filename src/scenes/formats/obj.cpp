@@ -13,7 +13,6 @@
 #include <optional>
 #include <set>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
 #include "exactff/scene_files.h"
@@ -25,6 +24,7 @@
 #include "text/encoding.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "text/text_lines.h"
 
 namespace exactff {
@@ -32,8 +32,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kDefaultPatch = "default";
-constexpr std::string_view kNoMaterial = "(none)";
+using formats::at_line;
+using formats::kDefaultPatch;
+using formats::kNoMaterial;
+
+constexpr const char* kPurpose = "a Wavefront OBJ file";
 constexpr std::uint32_t kNoTexture = std::numeric_limits<std::uint32_t>::max(), kBadTexture = kNoTexture - 1;
 constexpr std::size_t kMostIndices = std::numeric_limits<std::uint32_t>::max();
 
@@ -82,216 +85,8 @@ struct Tally {
   }
 };
 
-bool is_passed_over(std::string_view keyword) {
-  static constexpr std::array kWords = {
-      std::string_view("vp"),        std::string_view("p"),      std::string_view("l"),
-      std::string_view("s"),         std::string_view("mg"),     std::string_view("lod"),
-      std::string_view("usemap"),    std::string_view("maplib"), std::string_view("shadow_obj"),
-      std::string_view("trace_obj"), std::string_view("bevel"),  std::string_view("c_interp"),
-      std::string_view("d_interp")};
-  return std::find(kWords.begin(), kWords.end(), keyword) != kWords.end();
-}
-
-class ObjReader {
- public:
-  ObjReader(std::string_view text, const fs::path& path, const SceneOptions& options)
-      : path_(path), file_(path.string()), options_(options), builder_(file_, options), lines_(text) {}
-
-  Scene run();
-
- private:
-  void read_line();
-  void read_vertex(std::string_view values);
-  std::array<double, 3> read_coordinates(std::string_view values);
-  void read_normal(std::string_view values);
-  void read_texture(std::string_view values);
-  void note_texture_of(std::string_view corner);
-  void add_normal_of(std::string_view corner, Vec3& sum) const;
-  void read_face(std::string_view corners);
-  std::optional<std::uint32_t> read_corner(std::string_view corner);
-  std::uint32_t index_in(NameTable& table, std::string_view name);
-  void read_group(std::string_view names);
-  void use_material(std::string_view name);
-
-  void check_indices();
-  void check_names();
-  void warn_tallies();
-  void read_libraries();
-  void read_library(const fs::path& path, std::size_t line);
-  std::vector<fs::path> library_paths(std::string_view names) const;
-  void add_materials();
-  void add_faces();
-  void add_texture_of(const ObjFace& face);
-
-  void fail(std::string what, std::string why, std::string suggestion) {
-    problems_.add({file_, line_.number, std::move(what), std::move(why), std::move(suggestion)});
-  }
-  void warn(std::size_t line, std::string what, std::string why, std::string suggestion) {
-    builder_.warn({file_, line, std::move(what), std::move(why), std::move(suggestion)});
-  }
-
-  const fs::path path_;
-  const std::string file_;
-  const SceneOptions options_;
-  SceneBuilder builder_;
-  text::TextLines lines_;
-  text::TextLine line_;
-  text::ProblemList problems_;
-
-  std::vector<ObjFace> faces_;
-  std::vector<std::uint32_t> corners_;                      // of all faces
-  std::vector<TexturePoint> textures_;                      // vt; NaN if it cannot be read
-  std::vector<std::uint32_t> texture_corners_;              // of the corners up to the last one with vt; kNoTexture
-  std::vector<Vec3> normals_;                               // vn
-  std::vector<std::pair<std::size_t, Vec3>> face_normals_;  // index into faces_, sum over its corners; by face
-  NameTable groups_{kDefaultPatch};
-  NameTable objects_{kDefaultPatch};
-  NameTable materials_{kNoMaterial};
-  std::vector<std::size_t> material_line_{0};  // of its first usemtl
-  ObjFace current_;                            // group, object and material for the next face
-  bool has_groups_ = false;
-  std::vector<std::pair<std::size_t, std::string>> libraries_;  // line, names
-  std::unordered_map<std::string, Material> defined_;
-  bool library_missing_ = false;
-  ConvertedNames converted_;
-  Tally several_groups_;
-  Tally unread_geometry_;
-  Tally unknown_;
-  Tally without_texture_;
-};
-
-Scene ObjReader::run() {
-  while (lines_.next(line_)) read_line();
-  if (lines_.is_cut_off()) {
-    warn(line_.number, "the last line does not end with a newline", "the file may have been cut off there",
-         "add a newline if the file is complete");
-  }
-  check_indices();
-  check_names();
-  if (faces_.empty() && problems_.empty()) {
-    throw InputError({file_, 0, "has no faces", "there is nothing to compute with", "is it a Wavefront OBJ file?"});
-  }
-  warn_tallies();
-  read_libraries();
-  problems_.throw_if_any();
-  add_materials();
-  add_faces();
-  return builder_.build();
-}
-
-void ObjReader::read_line() {
-  std::string_view rest = line_.text;
-  const std::string_view keyword = text::take_word(rest);
-  if (keyword.empty() || is_passed_over(keyword)) return;
-  if (keyword == "v") return read_vertex(rest);
-  if (keyword == "vn") return read_normal(rest);
-  if (keyword == "vt") return read_texture(rest);
-  if (keyword == "f" || keyword == "fo") return read_face(rest);
-  if (keyword == "g") return read_group(rest);
-  if (keyword == "o") {
-    const std::string_view name = text::trimmed(rest);
-    current_.object = index_in(objects_, name.empty() ? kDefaultPatch : name);
-  } else if (keyword == "usemtl") {
-    use_material(text::trimmed(rest));
-  } else if (keyword == "mtllib") {
-    libraries_.emplace_back(line_.number, text::trimmed(rest));
-  } else {
-    static const std::set<std::string_view> kGeometry = {"curv", "curv2", "surf", "bzp", "bsp",
-                                                         "cdc",  "cdp",   "res",  "call"};
-    static const std::set<std::string_view> kFreeForm = {"cstype", "deg", "bmat", "step", "parm",  "trim",  "hole",
-                                                         "scrv",   "sp",  "end",  "con",  "ctech", "stech", "csh"};
-    if (kGeometry.contains(keyword))
-      unread_geometry_.add(line_.number, keyword);
-    else if (!kFreeForm.contains(keyword))
-      unknown_.add(line_.number, keyword);
-  }
-}
-
 // Numbers and indices hold no '#': there, a comment may follow without a blank.
 std::string_view before_comment(std::string_view values) { return values.substr(0, values.find('#')); }
-
-void ObjReader::read_vertex(std::string_view values) {
-  if (builder_.vertex_count() == kMostIndices) {
-    throw InputError({file_, line_.number, "more than 4294967295 vertices", "indices have 32 bits", "split the scene"});
-  }
-  // A faulty vertex still counts, so that the indices in the faces below stay correct.
-  const auto [x, y, z] = read_coordinates(before_comment(values));
-  builder_.add_vertex({x, y, z});
-}
-
-// Text after x, y and z (a weight or a colour) is ignored.
-std::array<double, 3> ObjReader::read_coordinates(std::string_view values) {
-  std::array<double, 3> xyz{};
-  for (double& coordinate : xyz) {
-    const std::string_view word = text::take_word(values);
-    if (word.empty()) {
-      fail("a vertex has fewer than three coordinates", "a point needs all three", "write v x y z");
-      return xyz;
-    }
-    const text::ParsedNumber number = text::parse_number(word);
-    if (number.fault != text::NumberFault::kNone)
-      fail(describe(number.fault, word), "a coordinate is one exact number", advice(number.fault));
-    coordinate = number.value;
-  }
-  return xyz;
-}
-
-// No value depends on a normal, so an unreadable one only counts, with a length of 0.
-void ObjReader::read_normal(std::string_view values) {
-  values = before_comment(values);
-  std::array<double, 3> xyz{};
-  for (double& coordinate : xyz) {
-    const text::ParsedNumber number = text::parse_number(text::take_word(values));
-    if (number.fault != text::NumberFault::kNone) {
-      xyz = {};
-      break;
-    }
-    coordinate = number.value;
-  }
-  const double largest = std::max({std::abs(xyz[0]), std::abs(xyz[1]), std::abs(xyz[2])});
-  for (double& coordinate : xyz) coordinate = largest > 0.0 ? coordinate / largest : 0.0;
-  normals_.push_back({xyz[0], xyz[1], xyz[2]});
-}
-
-// A lone number is u; v is 0 then. No form factor depends on them, so an unreadable one is no problem.
-void ObjReader::read_texture(std::string_view values) {
-  values = before_comment(values);
-  const text::ParsedNumber u = text::parse_number(text::take_word(values));
-  const std::string_view second = text::take_word(values);
-  const text::ParsedNumber v = text::parse_number(second.empty() ? "0" : second);
-  const bool sound = u.fault == text::NumberFault::kNone && v.fault == text::NumberFault::kNone;
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  textures_.push_back(sound ? TexturePoint{u.value, v.value} : TexturePoint{kNaN, kNaN});
-}
-
-void ObjReader::read_face(std::string_view corners) {
-  ObjFace face = current_;
-  face.line = line_.number;
-  face.first_corner = corners_.size();
-  bool sound = true;
-  Vec3 normal;
-  corners = before_comment(corners);
-  for (std::string_view word = text::take_word(corners); !word.empty(); word = text::take_word(corners)) {
-    const std::optional<std::uint32_t> corner = read_corner(word);
-    sound = sound && corner;
-    if (corner) corners_.push_back(*corner);
-    if (corner) note_texture_of(word);
-    if (corner && !normals_.empty()) add_normal_of(word, normal);
-  }
-  if (normal != Vec3{}) face_normals_.emplace_back(faces_.size(), normal);
-  face.corner_count = corners_.size() - face.first_corner;
-  if (corners_.size() > kMostIndices || faces_.size() == kMostIndices) {
-    throw InputError({file_, line_.number, "more than 4294967295 faces or corners of faces", "indices have 32 bits",
-                      "split the scene"});
-  }
-  if (sound && face.corner_count < 3 && options_.bad_faces == BadFaces::kReject) {
-    fail("a face has " + text::counted(face.corner_count, "vertex", "vertices"), "a polygon has at least three",
-         "remove it, or skip bad faces with --skip-bad-faces");
-  }
-  faces_.push_back(face);
-}
-
-namespace {
 
 enum class IndexText { kNumber, kTooLong, kOther };
 
@@ -316,224 +111,353 @@ bool well_formed_tail(std::string_view tail) {
   return true;
 }
 
-}  // namespace
+class ObjReader {
+ public:
+  ObjReader(std::string_view text, const fs::path& path, const SceneOptions& options)
+      : path_(path), input_(path, options, kPurpose, formats::MeshInput::Materials::kOfReader), lines_(text) {}
 
-// The second number of a corner. It may refer to a vt further down.
-void ObjReader::note_texture_of(std::string_view corner) {
-  const std::size_t slash = corner.find('/');
-  if (slash == std::string_view::npos) return;
-  const std::string_view text = corner.substr(slash + 1, corner.find('/', slash + 1) - slash - 1);
-  if (text.empty()) return;
-  long index = 0;
-  const bool is_number = parse_index(text, index) == IndexText::kNumber;
-  const long position = index > 0 ? index - 1 : static_cast<long>(textures_.size()) + index;
-  const bool possible = is_number && index != 0 && position >= 0 && std::cmp_less(position, kNoTexture);
-  texture_corners_.resize(corners_.size(), kNoTexture);
-  texture_corners_.back() = possible ? static_cast<std::uint32_t>(position) : kBadTexture;
-}
-
-// The third number of a corner. A vn further down says nothing: all programs write them before the faces.
-void ObjReader::add_normal_of(std::string_view corner, Vec3& sum) const {
-  const std::size_t slash = corner.rfind('/');
-  if (slash == std::string_view::npos || corner.find('/') == slash) return;
-  long index = 0;
-  if (parse_index(corner.substr(slash + 1), index) != IndexText::kNumber || index == 0) return;
-  const auto count = static_cast<long>(normals_.size());
-  const long position = index > 0 ? index - 1 : count + index;
-  if (position < 0 || position >= count) return;
-  sum = kernel::sum(sum, normals_[static_cast<std::size_t>(position)]);
-}
-
-// Counted from 0; not yet checked against the end of the vertex list.
-std::optional<std::uint32_t> ObjReader::read_corner(std::string_view corner) {
-  const std::size_t slash = std::min(corner.find('/'), corner.size());
-  const auto count = static_cast<long>(builder_.vertex_count());
-  long index = 0;
-  const IndexText kind = parse_index(corner.substr(0, slash), index);
-  if (kind == IndexText::kOther || !well_formed_tail(corner.substr(slash))) {
-    fail(text::in_quotes(corner) + " is not a valid corner of a face", "a corner is a vertex number",
-         "write v, v/vt, v//vn or v/vt/vn");
-    return std::nullopt;
+  Scene run() {
+    while (lines_.next(line_)) read_line();
+    input_.warn_if_cut_off(lines_, line_.number);
+    check_indices();
+    check_names();
+    warn_tallies();
+    read_libraries();
+    input_.problems().throw_if_any();
+    add_materials();
+    add_faces();
+    return input_.build();
   }
-  if (kind == IndexText::kNumber && index == 0) {
-    fail("vertex 0 does not exist", "vertices are numbered from 1, or backwards from -1", "correct the index");
-    return std::nullopt;
-  }
-  const long position = index > 0 ? index - 1 : count + index;
-  if (kind == IndexText::kTooLong || position < 0 || std::cmp_greater_equal(position, kMostIndices)) {
-    fail("vertex " + std::string(corner.substr(0, std::min<std::size_t>(slash, 40))) + " does not exist",
-         "the lines before define " + std::to_string(count) + " vertices", "correct the index");
-    return std::nullopt;
-  }
-  return static_cast<std::uint32_t>(position);
-}
 
-std::uint32_t ObjReader::index_in(NameTable& table, std::string_view name) {
-  if (!text::is_utf8(name)) converted_.add(line_.number, name);
-  return table.index(name);
-}
-
-void ObjReader::read_group(std::string_view names) {
-  has_groups_ = true;
-  const std::string_view all = text::trimmed(names);
-  const std::string_view first = text::take_word(names);
-  current_.group = index_in(groups_, first.empty() ? kDefaultPatch : first);
-  if (!text::trimmed(names).empty()) several_groups_.add(line_.number, all);
-}
-
-void ObjReader::use_material(std::string_view name) {
-  current_.material = index_in(materials_, name.empty() ? kNoMaterial : name);
-  if (current_.material == material_line_.size()) material_line_.push_back(line_.number);
-}
-
-void ObjReader::check_indices() {
-  const std::size_t count = builder_.vertex_count();
-  for (const ObjFace& face : faces_) {
-    for (std::size_t i = face.first_corner; i < face.first_corner + face.corner_count; ++i) {
-      if (corners_[i] < count) continue;
-      problems_.add({file_, face.line, "vertex " + std::to_string(corners_[i] + 1ULL) + " does not exist",
-                     "the file has " + text::counted(count, "vertex", "vertices"), "correct the index"});
+ private:
+  void read_line() {
+    std::string_view rest = line_.text;
+    const std::string_view keyword = text::take_word(rest);
+    if (keyword.empty()) return;
+    if (keyword == "v") return read_vertex(rest);
+    if (keyword == "vn") return read_normal(rest);
+    if (keyword == "vt") return read_texture(rest);
+    if (keyword == "f" || keyword == "fo") return read_face(rest);
+    if (keyword == "g") return read_group(rest);
+    if (keyword == "o") {
+      const std::string_view name = text::trimmed(rest);
+      current_.object = index_in(objects_, name.empty() ? kDefaultPatch : name);
+    } else if (keyword == "usemtl") {
+      use_material(text::trimmed(rest));
+    } else if (keyword == "mtllib") {
+      libraries_.emplace_back(line_.number, text::trimmed(rest));
+    } else {
+      static const std::set<std::string_view> kGeometry = {"curv", "curv2", "surf", "bzp", "bsp",
+                                                           "cdc",  "cdp",   "res",  "call"};
+      static const std::set<std::string_view> kPassedOver = {
+          "vp",        "p",     "l",        "s",        "mg",     "lod", "usemap", "maplib", "shadow_obj",
+          "trace_obj", "bevel", "c_interp", "d_interp", "cstype", "deg", "bmat",   "step",   "parm",
+          "trim",      "hole",  "scrv",     "sp",       "end",    "con", "ctech",  "stech",  "csh"};
+      if (kGeometry.contains(keyword))
+        unread_geometry_.add(line_.number, keyword);
+      else if (!kPassedOver.contains(keyword))
+        unknown_.add(line_.number, keyword);
     }
   }
-}
 
-// A file that mixes encodings may have two names that become one.
-void ObjReader::check_names() {
-  for (const std::string& name : converted_.names()) {
-    const std::string converted = text::in_utf8(name);
-    for (const NameTable* table : {&groups_, &objects_, &materials_}) {
-      if (!table->contains(name) || !table->contains(converted)) continue;
-      problems_.add({file_, 0, "the name " + text::in_quotes(converted) + " is written in UTF-8 and in Latin-1",
-                     "they might be meant as two names", "save the file as UTF-8"});
+  // A faulty vertex still counts, so that the indices in the faces below stay correct. Text after x, y and z (a weight
+  // or a colour) is ignored.
+  void read_vertex(std::string_view values) {
+    values = before_comment(values);
+    input_.add_vertex(input_.take_point(values, line_.number, "write v x y z"), at_line(line_.number));
+  }
+
+  // No value depends on a normal, so an unreadable one only counts, with a length of 0.
+  void read_normal(std::string_view values) {
+    values = before_comment(values);
+    std::array<double, 3> xyz{};
+    for (double& coordinate : xyz) {
+      const text::ParsedNumber number = text::parse_number(text::take_word(values));
+      if (number.fault != text::NumberFault::kNone) {
+        xyz = {};
+        break;
+      }
+      coordinate = number.value;
+    }
+    const double largest = std::max({std::abs(xyz[0]), std::abs(xyz[1]), std::abs(xyz[2])});
+    for (double& coordinate : xyz) coordinate = largest > 0.0 ? coordinate / largest : 0.0;
+    normals_.push_back({xyz[0], xyz[1], xyz[2]});
+  }
+
+  // A lone number is u; v is 0 then. No form factor depends on them, so an unreadable one is no problem.
+  void read_texture(std::string_view values) {
+    values = before_comment(values);
+    const text::ParsedNumber u = text::parse_number(text::take_word(values));
+    const std::string_view second = text::take_word(values);
+    const text::ParsedNumber v = text::parse_number(second.empty() ? "0" : second);
+    const bool sound = u.fault == text::NumberFault::kNone && v.fault == text::NumberFault::kNone;
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    textures_.push_back(sound ? TexturePoint{u.value, v.value} : TexturePoint{kNaN, kNaN});
+  }
+
+  // The second number of a corner. It may refer to a vt further down.
+  void note_texture_of(std::string_view corner) {
+    const std::size_t slash = corner.find('/');
+    if (slash == std::string_view::npos) return;
+    const std::string_view text = corner.substr(slash + 1, corner.find('/', slash + 1) - slash - 1);
+    if (text.empty()) return;
+    long index = 0;
+    const bool is_number = parse_index(text, index) == IndexText::kNumber;
+    const long position = index > 0 ? index - 1 : static_cast<long>(textures_.size()) + index;
+    const bool possible = is_number && index != 0 && position >= 0 && std::cmp_less(position, kNoTexture);
+    texture_corners_.resize(corners_.size(), kNoTexture);
+    texture_corners_.back() = possible ? static_cast<std::uint32_t>(position) : kBadTexture;
+  }
+
+  // The third number of a corner. A vn further down says nothing: all programs write them before the faces.
+  void add_normal_of(std::string_view corner, Vec3& sum) const {
+    const std::size_t slash = corner.rfind('/');
+    if (slash == std::string_view::npos || corner.find('/') == slash) return;
+    long index = 0;
+    if (parse_index(corner.substr(slash + 1), index) != IndexText::kNumber || index == 0) return;
+    const auto count = static_cast<long>(normals_.size());
+    const long position = index > 0 ? index - 1 : count + index;
+    if (position < 0 || position >= count) return;
+    sum = kernel::sum(sum, normals_[static_cast<std::size_t>(position)]);
+  }
+
+  void read_face(std::string_view corners) {
+    ObjFace face = current_;
+    face.line = line_.number;
+    face.first_corner = corners_.size();
+    bool sound = true;
+    Vec3 normal;
+    corners = before_comment(corners);
+    for (std::string_view word = text::take_word(corners); !word.empty(); word = text::take_word(corners)) {
+      const std::optional<std::uint32_t> corner = read_corner(word);
+      sound = sound && corner;
+      if (corner) corners_.push_back(*corner);
+      if (corner) note_texture_of(word);
+      if (corner && !normals_.empty()) add_normal_of(word, normal);
+    }
+    if (normal != Vec3{}) face_normals_.emplace_back(faces_.size(), normal);
+    face.corner_count = corners_.size() - face.first_corner;
+    if (corners_.size() > kMostIndices || faces_.size() == kMostIndices) {
+      input_.give_up(at_line(line_.number), "more than 4294967295 faces or corners of faces", "indices have 32 bits",
+                     "split the scene");
+    }
+    if (sound) (void)input_.is_polygon(face.corner_count, at_line(line_.number));
+    faces_.push_back(face);
+  }
+
+  // Counted from 0; not yet checked against the end of the vertex list.
+  std::optional<std::uint32_t> read_corner(std::string_view corner) {
+    const std::size_t slash = std::min(corner.find('/'), corner.size());
+    const auto count = static_cast<long>(input_.vertex_count());
+    long index = 0;
+    const IndexText kind = parse_index(corner.substr(0, slash), index);
+    if (kind == IndexText::kOther || !well_formed_tail(corner.substr(slash))) {
+      fail(text::in_quotes(corner) + " is not a valid corner of a face", "a corner is a vertex number",
+           "write v, v/vt, v//vn or v/vt/vn");
+      return std::nullopt;
+    }
+    if (kind == IndexText::kNumber && index == 0) {
+      fail("vertex 0 does not exist", "vertices are numbered from 1, or backwards from -1", "correct the index");
+      return std::nullopt;
+    }
+    const long position = index > 0 ? index - 1 : count + index;
+    if (kind == IndexText::kTooLong || position < 0 || std::cmp_greater_equal(position, kMostIndices)) {
+      fail("vertex " + std::string(corner.substr(0, std::min<std::size_t>(slash, 40))) + " does not exist",
+           "the lines before define " + std::to_string(count) + " vertices", "correct the index");
+      return std::nullopt;
+    }
+    return static_cast<std::uint32_t>(position);
+  }
+
+  std::uint32_t index_in(NameTable& table, std::string_view name) {
+    if (!text::is_utf8(name)) converted_.add(line_.number, name);
+    return table.index(name);
+  }
+
+  void read_group(std::string_view names) {
+    has_groups_ = true;
+    const std::string_view all = text::trimmed(names);
+    const std::string_view first = text::take_word(names);
+    current_.group = index_in(groups_, first.empty() ? kDefaultPatch : first);
+    if (!text::trimmed(names).empty()) several_groups_.add(line_.number, all);
+  }
+
+  void use_material(std::string_view name) {
+    current_.material = index_in(materials_, name.empty() ? kNoMaterial : name);
+    if (current_.material == material_line_.size()) material_line_.push_back(line_.number);
+  }
+
+  void check_indices() {
+    const std::size_t count = input_.vertex_count();
+    for (const ObjFace& face : faces_) {
+      for (std::size_t i = face.first_corner; i < face.first_corner + face.corner_count; ++i) {
+        if (corners_[i] < count) continue;
+        input_.fail(at_line(face.line), "vertex " + std::to_string(corners_[i] + 1ULL) + " does not exist",
+                    "the file has " + text::counted(count, "vertex", "vertices"), "correct the index");
+      }
     }
   }
-}
 
-void ObjReader::warn_tallies() {
-  if (!converted_.names().empty()) builder_.warn(converted_.warning(file_));
-  if (several_groups_.count > 0) {
-    warn(several_groups_.first_line, "g " + several_groups_.first + " names several groups" + several_groups_.others(),
-         "a face belongs to one patch", "the first name is used");
+  // A file that mixes encodings may have two names that become one.
+  void check_names() {
+    for (const std::string& name : converted_.names()) {
+      const std::string converted = text::in_utf8(name);
+      for (const NameTable* table : {&groups_, &objects_, &materials_}) {
+        if (!table->contains(name) || !table->contains(converted)) continue;
+        input_.fail({}, "the name " + text::in_quotes(converted) + " is written in UTF-8 and in Latin-1",
+                    "they might be meant as two names", "save the file as UTF-8");
+      }
+    }
   }
-  if (unread_geometry_.count > 0) {
-    warn(unread_geometry_.first_line, unread_geometry_.first + " is not read" + unread_geometry_.others(),
+
+  void warn_tallies() {
+    if (!converted_.names().empty()) input_.builder().warn(converted_.warning(input_.file()));
+    warn(several_groups_, "g " + several_groups_.first + " names several groups", "a face belongs to one patch",
+         "the first name is used");
+    warn(unread_geometry_, unread_geometry_.first + " is not read",
          "curves, surfaces and references to other files are not polygons", "convert them to faces");
+    warn(unknown_, "unknown keyword " + unknown_.first, "the line is ignored", "is it a Wavefront OBJ file?");
   }
-  if (unknown_.count > 0) {
-    warn(unknown_.first_line, "unknown keyword " + unknown_.first + unknown_.others(), "the line is ignored",
-         "is it a Wavefront OBJ file?");
-  }
-}
 
-// A name may contain blanks; one line may hold several names. Backslashes are read as slashes if necessary.
-std::vector<fs::path> ObjReader::library_paths(std::string_view names) const {
-  const auto beside = [&](std::string_view name) {
-    const fs::path as_written = path_.parent_path() / name;
-    if (name.find('\\') == std::string_view::npos) return as_written;
-    std::string other(name);
-    std::replace(other.begin(), other.end(), '\\', '/');
-    std::error_code ignored;
-    return fs::exists(as_written, ignored) ? as_written : path_.parent_path() / other;
-  };
-  std::error_code ignored;
-  if (fs::exists(beside(names), ignored)) return {beside(names)};
-  std::set<std::string_view> seen;
-  std::vector<fs::path> paths;
-  for (std::string_view name = text::take_word(names); !name.empty(); name = text::take_word(names)) {
-    if (seen.insert(name).second) paths.push_back(beside(name));
-  }
-  return paths;
-}
-
-void ObjReader::read_libraries() {
-  std::set<fs::path> done;
-  for (const auto& [line, names] : libraries_) {
-    for (const fs::path& path : library_paths(names)) {
-      if (done.insert(path).second) read_library(path, line);
+  void read_libraries() {
+    std::set<fs::path> done;
+    for (const auto& [line, names] : libraries_) {
+      for (const fs::path& path : library_paths(names)) {
+        if (done.insert(path).second) read_library(path, line);
+      }
     }
   }
-}
 
-void ObjReader::read_library(const fs::path& path, std::size_t line) {
-  std::error_code error;
-  std::optional<std::string> text;
-  std::string why;
-  try {
-    // Only a plain file: a device or a pipe named in a scene could keep the reader waiting for ever.
-    if (fs::is_regular_file(path, error)) text = text::read_text_file(path, "a Wavefront MTL file");
-  } catch (const InputError& unreadable) {
-    const Problem& problem = unreadable.problems().front();
-    why = problem.what + ": " + problem.why + "; ";
+  void read_library(const fs::path& path, std::size_t line) {
+    std::error_code error;
+    std::optional<std::string> text;
+    std::string why;
+    try {
+      // Only a plain file: a device or a pipe named in a scene could keep the reader waiting for ever.
+      if (fs::is_regular_file(path, error)) text = text::read_text_file(path, "a Wavefront MTL file");
+    } catch (const InputError& unreadable) {
+      const Problem& problem = unreadable.problems().front();
+      why = problem.what + ": " + problem.why + "; ";
+    }
+    if (!text) {
+      library_missing_ = true;
+      return input_.warn(at_line(line),
+                         "material file " + text::in_quotes(path.string(), text::kShownName) + " cannot be read",
+                         why + "its materials get Kd 1, Ke 0", "add the file if colours or emission matter");
+    }
+    input_.builder().read_from(path);
+    text::ProblemList warnings;
+    for (Material& material : read_mtl(*text, path.string(), input_.problems(), warnings)) {
+      defined_.try_emplace(material.name, std::move(material));
+    }
+    for (Problem& warning : warnings.take("warnings")) input_.builder().warn(std::move(warning));
   }
-  if (!text) {
-    library_missing_ = true;
-    return warn(line, "material file " + text::in_quotes(path.string(), text::kShownName) + " cannot be read",
-                why + "its materials get Kd 1, Ke 0", "add the file if colours or emission matter");
-  }
-  builder_.read_from(path);
-  text::ProblemList warnings;
-  for (Material& material : read_mtl(*text, path.string(), problems_, warnings)) {
-    defined_.try_emplace(material.name, std::move(material));
-  }
-  for (Problem& warning : warnings.take("warnings")) builder_.warn(std::move(warning));
-}
 
-void ObjReader::add_materials() {
-  const std::vector<std::string>& names = materials_.names();
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto definition = defined_.find(names[i]);
-    builder_.add_material(definition != defined_.end() ? definition->second : Material{names[i]});
-    if (definition != defined_.end() || i == 0 || library_missing_) continue;
-    warn(material_line_[i], "material " + text::in_quotes(names[i]) + " is not defined", "it gets Kd 1, Ke 0",
-         "define it in a file named by mtllib");
+  // A name may contain blanks; one line may hold several names. Backslashes are read as slashes if necessary.
+  std::vector<fs::path> library_paths(std::string_view names) const {
+    const auto beside = [&](std::string_view name) {
+      const fs::path as_written = path_.parent_path() / name;
+      if (name.find('\\') == std::string_view::npos) return as_written;
+      std::string other(name);
+      std::replace(other.begin(), other.end(), '\\', '/');
+      std::error_code ignored;
+      return fs::exists(as_written, ignored) ? as_written : path_.parent_path() / other;
+    };
+    std::error_code ignored;
+    if (fs::exists(beside(names), ignored)) return {beside(names)};
+    std::set<std::string_view> seen;
+    std::vector<fs::path> paths;
+    for (std::string_view name = text::take_word(names); !name.empty(); name = text::take_word(names)) {
+      if (seen.insert(name).second) paths.push_back(beside(name));
+    }
+    return paths;
   }
-}
 
-// Patches are made in the order of their first faces.
-void ObjReader::add_faces() {
-  const std::vector<std::string>& names = has_groups_ ? groups_.names() : objects_.names();
-  std::vector<std::optional<PatchId>> patches(names.size());
-  auto normal = face_normals_.begin();
-  for (std::size_t i = 0; i < faces_.size(); ++i) {
-    const ObjFace& face = faces_[i];
-    const std::uint32_t name = has_groups_ ? face.group : face.object;
-    if (!patches[name]) patches[name] = builder_.patch(names[name]);
-    const auto first = corners_.begin() + static_cast<std::ptrdiff_t>(face.first_corner);
-    std::vector<std::uint32_t> ring(first, first + static_cast<std::ptrdiff_t>(face.corner_count));
-    std::vector<std::vector<std::uint32_t>> rings;
-    rings.push_back(std::move(ring));
-    builder_.add_face(*patches[name], static_cast<MaterialId>(face.material), std::move(rings), face.line);
-    add_texture_of(face);
-    if (normal != face_normals_.end() && normal->first == i) builder_.state_normal((normal++)->second);
+  void add_materials() {
+    const std::vector<std::string>& names = materials_.names();
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const auto definition = defined_.find(names[i]);
+      input_.material(definition != defined_.end() ? definition->second : Material{names[i]});
+      if (definition != defined_.end() || i == 0 || library_missing_) continue;
+      input_.warn(at_line(material_line_[i]), "material " + text::in_quotes(names[i]) + " is not defined",
+                  "it gets Kd 1, Ke 0", "define it in a file named by mtllib");
+    }
   }
-  if (without_texture_.count == 0) return;
-  warn(without_texture_.first_line, "a face has no valid vt at one of its corners" + without_texture_.others(),
-       "it has none then, and lightmaps leave it out; nothing else depends on it",
-       "give every corner the number of a vt");
-}
 
-void ObjReader::add_texture_of(const ObjFace& face) {
-  std::vector<TexturePoint> points;
-  std::size_t faults = 0;
-  for (std::size_t c = face.first_corner; c < face.first_corner + face.corner_count; ++c) {
-    const std::uint32_t index = c < texture_corners_.size() ? texture_corners_[c] : kNoTexture;
-    const bool exists = index < textures_.size() && std::isfinite(textures_[index].u);
-    if (exists) points.push_back(textures_[index]);
-    if (!exists && index != kNoTexture) ++faults;
+  // Patches are made in the order of their first faces.
+  void add_faces() {
+    const std::vector<std::string>& names = has_groups_ ? groups_.names() : objects_.names();
+    std::vector<std::optional<PatchId>> patches(names.size());
+    auto normal = face_normals_.begin();
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      const ObjFace& face = faces_[i];
+      const std::uint32_t name = has_groups_ ? face.group : face.object;
+      if (!patches[name]) patches[name] = input_.patch(names[name]);
+      const auto first = corners_.begin() + static_cast<std::ptrdiff_t>(face.first_corner);
+      input_.add_face(*patches[name], static_cast<MaterialId>(face.material),
+                      {first, first + static_cast<std::ptrdiff_t>(face.corner_count)}, at_line(face.line));
+      add_texture_of(face);
+      if (normal != face_normals_.end() && normal->first == i) input_.builder().state_normal((normal++)->second);
+    }
+    warn(without_texture_, "a face has no valid vt at one of its corners",
+         "it has none then, and lightmaps leave it out; nothing else depends on it",
+         "give every corner the number of a vt");
   }
-  const bool whole = points.size() == face.corner_count;
-  if (faults > 0 || (!whole && !points.empty())) return without_texture_.add(face.line, "");
-  if (whole && !points.empty()) builder_.state_texture(0, std::move(points));
-}
 
-constexpr const char* kPurpose = "a Wavefront OBJ file";
+  void add_texture_of(const ObjFace& face) {
+    std::vector<TexturePoint> points;
+    std::size_t faults = 0;
+    for (std::size_t c = face.first_corner; c < face.first_corner + face.corner_count; ++c) {
+      const std::uint32_t index = c < texture_corners_.size() ? texture_corners_[c] : kNoTexture;
+      const bool exists = index < textures_.size() && std::isfinite(textures_[index].u);
+      if (exists) points.push_back(textures_[index]);
+      if (!exists && index != kNoTexture) ++faults;
+    }
+    const bool whole = points.size() == face.corner_count;
+    if (faults > 0 || (!whole && !points.empty())) return without_texture_.add(face.line, "");
+    if (whole && !points.empty()) input_.builder().state_texture(0, std::move(points));
+  }
+
+  void fail(std::string what, std::string why, std::string suggestion) {
+    input_.fail(at_line(line_.number), std::move(what), std::move(why), std::move(suggestion));
+  }
+  // Of lines of one kind.
+  void warn(const Tally& tally, const std::string& what, const char* why, const char* suggestion) {
+    if (tally.count > 0) input_.warn(at_line(tally.first_line), what + tally.others(), why, suggestion);
+  }
+
+  const fs::path path_;
+  formats::MeshInput input_;
+  text::TextLines lines_;
+  text::TextLine line_;
+
+  std::vector<ObjFace> faces_;
+  std::vector<std::uint32_t> corners_;                      // of all faces
+  std::vector<TexturePoint> textures_;                      // vt; NaN if it cannot be read
+  std::vector<std::uint32_t> texture_corners_;              // of the corners up to the last one with vt; kNoTexture
+  std::vector<Vec3> normals_;                               // vn
+  std::vector<std::pair<std::size_t, Vec3>> face_normals_;  // index into faces_, sum over its corners; by face
+  NameTable groups_{kDefaultPatch};
+  NameTable objects_{kDefaultPatch};
+  NameTable materials_{kNoMaterial};
+  std::vector<std::size_t> material_line_{0};  // of its first usemtl
+  ObjFace current_;                            // group, object and material for the next face
+  bool has_groups_ = false;
+  std::vector<std::pair<std::size_t, std::string>> libraries_;  // line, names
+  std::unordered_map<std::string, Material> defined_;
+  bool library_missing_ = false;
+  ConvertedNames converted_;
+  Tally several_groups_;
+  Tally unread_geometry_;
+  Tally unknown_;
+  Tally without_texture_;
+};
 
 }  // namespace
 
 Scene formats::read_obj(std::string_view text, const fs::path& path, const SceneOptions& options) {
   const kernel::StandardArithmetic arithmetic;
-  if (text.empty())
-    throw InputError({path.string(), 0, "is empty", "there is nothing to compute with", "give a Wavefront OBJ file"});
+  if (text.empty()) text::refuse(path, "is empty", "there is nothing to compute with", "give a Wavefront OBJ file");
   return ObjReader(text, path, with_unit_of(text, options)).run();
 }
 

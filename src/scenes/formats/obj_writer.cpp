@@ -7,6 +7,8 @@
 #include "formats/mesh_input.h"
 #include "formats/writers.h"
 #include "scene/scene.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff::formats {
 
@@ -52,12 +54,7 @@ class TextureLines {
       for (const TexturePoint& point : texture_of(scene, face)) {
         const auto [place, is_new] = known.try_emplace({point.u, point.v}, known.size() + 1);
         corners_.push_back(place->second);
-        if (!is_new) continue;
-        out += "vt ";
-        append_number(out, point.u);
-        out += ' ';
-        append_number(out, point.v);
-        out += '\n';
+        if (is_new) out += "vt " + text::shortest(point.u) + ' ' + text::shortest(point.v) + '\n';
       }
       if (scene.texture(face.face).empty()) corners_.resize(corners_.size() + face.corners.size());
     }
@@ -106,12 +103,6 @@ void append_faces(std::string& out, const Scene& scene, const std::vector<Output
   }
 }
 
-void append_colour(std::string& out, const char* keyword, const Rgb& colour) {
-  out += keyword;
-  append_point(out, {colour.r, colour.g, colour.b});
-  out += '\n';
-}
-
 }  // namespace
 
 bool needs_mtl(const Scene& scene) {
@@ -125,8 +116,8 @@ std::string write_mtl(const Scene& scene, Losses& losses) {
     const Material& material = scene.materials()[i];
     if (is_default(material)) continue;
     out += "newmtl " + names[i] + '\n';
-    append_colour(out, "Kd", material.reflectance);
-    append_colour(out, "Ke", material.radiosity);
+    for (const auto& [keyword, c] : {std::pair("Kd ", material.reflectance), std::pair("Ke ", material.radiosity)})
+      append_point(out, keyword, {c.r, c.g, c.b});
   }
   return out;
 }
@@ -136,19 +127,15 @@ std::string write_obj(const Scene& scene, const std::string& mtl, Losses& losses
   const std::vector<std::string> patches = output_names(patch_names(scene), kObjNames, "patch", losses);
   Losses told_by_mtl({});
   const std::vector<std::string> materials = material_names(scene, told_by_mtl);
-  std::string out;
+  std::string out = unit_line(scene, "#");
   if (!mtl.empty()) {
     if (fit_name(mtl, kObjNames) != mtl) {
-      throw InputError({losses.file(), 0, "the name of its MTL file cannot be written into an OBJ file",
-                        "it contains characters that OBJ does not allow", "choose another name"});
+      text::refuse(losses.file(), "the name of its MTL file cannot be written into an OBJ file",
+                   "it contains characters that OBJ does not allow", "choose another name");
     }
     out += "mtllib " + mtl + '\n';
   }
-  for (const Vec3& vertex : scene.vertices()) {
-    out += 'v';
-    append_point(out, vertex);
-    out += '\n';
-  }
+  for (const Vec3& vertex : scene.vertices()) append_point(out, "v ", vertex);
   if (!used_in_order(scene, faces)) {
     for (const std::string& name : materials) out += "usemtl " + name + '\n';
     if (!materials.empty()) out += "usemtl " + std::string(kNoMaterial) + '\n';

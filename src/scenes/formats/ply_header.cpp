@@ -75,13 +75,104 @@ class HeaderReader {
   }
 
  private:
-  bool read_line(std::string_view line);
-  void read_encoding(std::string_view words);
-  void read_comment(std::string_view words);
-  void read_element(std::string_view words);
-  void read_property(std::string_view words);
-  PlyType type_named(std::string_view name);
-  PlyHeader finished();
+  // True at the end of the header.
+  bool read_line(std::string_view line) {
+    if (line.find('\n') != std::string_view::npos)
+      fail("the lines of the header end differently", "it is not clear where the data begin",
+           "use one kind of line end");
+    std::string_view rest = line;
+    const std::string_view keyword = text::take_word(rest);
+    if (keyword == "end_header") return true;
+    if (keyword.empty() || keyword == "obj_info") return false;
+    if (keyword == "format") {
+      read_encoding(rest);
+    } else if (keyword == "comment") {
+      read_comment(rest);
+    } else if (keyword == "element") {
+      read_element(rest);
+    } else if (keyword == "property") {
+      read_property(rest);
+    } else {
+      fail("unknown keyword " + text::in_quotes(keyword) + " in the header",
+           "the meaning of the data depends on every line of it", "correct the line");
+    }
+    return false;
+  }
+
+  void read_encoding(std::string_view words) {
+    static constexpr std::array<std::string_view, 3> kNames = {"ascii", "binary_little_endian", "binary_big_endian"};
+    const std::string_view name = text::take_word(words);
+    const std::string_view version = text::take_word(words);
+    const auto found = std::find(kNames.begin(), kNames.end(), name);
+    if (found == kNames.end() || version != "1.0") {
+      fail("unknown format " + text::in_quotes(std::string(name) + " " + std::string(version)),
+           "exactff reads ascii, binary_little_endian and binary_big_endian, each of version 1.0", "convert the file");
+    }
+    header_.encoding = static_cast<PlyEncoding>(found - kNames.begin());
+    has_encoding_ = true;
+  }
+
+  // exactff's own convention: other programs pass over comments.
+  void read_comment(std::string_view words) {
+    if (text::take_word(words) != "patch") return;
+    const auto number = whole_number(text::take_word(words));
+    const std::string_view name = text::trimmed(words);
+    if (number && !name.empty()) header_.patch_names.try_emplace(*number, name);
+  }
+
+  void read_element(std::string_view words) {
+    const std::string_view name = text::take_word(words);
+    const std::string_view word = text::take_word(words);
+    const auto count = whole_number(word);
+    if (name.empty() || !count || *count < 0) {
+      fail("an element needs a name and a count, and " + text::in_quotes(word) + " is no count",
+           "the data are read by the counts of the header", "write element NAME COUNT");
+    }
+    const auto same = [&](const PlyElement& element) { return element.name == name; };
+    if (std::any_of(header_.elements.begin(), header_.elements.end(), same))
+      fail("element " + text::in_quotes(name) + " is declared twice", "it is not clear which one counts", "remove one");
+    if (header_.elements.size() == kMost) fail("more than 1000 elements", "no program needs them", "is it a PLY file?");
+    header_.elements.push_back({std::string(name), static_cast<std::uint64_t>(*count), lines_.number(), {}});
+  }
+
+  void read_property(std::string_view words) {
+    if (header_.elements.empty())
+      fail("a property before any element", "it does not belong to anything", "declare its element first");
+    PlyProperty property;
+    std::string_view type = text::take_word(words);
+    if (type == "list") {
+      property.count_type = type_named(text::take_word(words));
+      type = text::take_word(words);
+      if (!is_whole(*property.count_type))
+        fail("the count of a list is not an integer", "it counts the items of the list", "use uchar or int");
+    }
+    property.type = type_named(type);
+    property.name = text::take_word(words);
+    if (property.name.empty()) fail("a property without a name", "its data have no meaning", "give it a name");
+    PlyElement& element = header_.elements.back();
+    if (element.find(property.name)) {
+      fail("property " + text::in_quotes(property.name) + " is declared twice", "it is not clear which one counts",
+           "remove one");
+    }
+    if (element.properties.size() == kMost)
+      fail("more than 1000 properties", "no program needs them", "is it a PLY file?");
+    element.properties.push_back(std::move(property));
+  }
+
+  PlyType type_named(std::string_view name) {
+    const auto* const found =
+        std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& t) { return t.first == name; });
+    if (found != kTypes.end()) return found->second;
+    fail("unknown type " + text::in_quotes(name), "the size of the data depends on it",
+         "use char, uchar, short, ushort, int, uint, float or double");
+  }
+
+  PlyHeader finished() {
+    if (!has_encoding_) fail("the header has no format", "it says how to read the data", "add format ascii 1.0");
+    header_.lines = lines_.number();
+    header_.bytes = lines_.bytes();
+    return std::move(header_);
+  }
 
   [[noreturn]] void fail(std::string what, std::string why, std::string suggestion) {
     input_.give_up(at_line(lines_.number()), std::move(what), std::move(why), std::move(suggestion));
@@ -92,103 +183,6 @@ class HeaderReader {
   PlyHeader header_;
   bool has_encoding_ = false;
 };
-
-// True at the end of the header.
-bool HeaderReader::read_line(std::string_view line) {
-  if (line.find('\n') != std::string_view::npos)
-    fail("the lines of the header end differently", "it is not clear where the data begin", "use one kind of line end");
-  std::string_view rest = line;
-  const std::string_view keyword = text::take_word(rest);
-  if (keyword == "end_header") return true;
-  if (keyword.empty() || keyword == "obj_info") return false;
-  if (keyword == "format") {
-    read_encoding(rest);
-  } else if (keyword == "comment") {
-    read_comment(rest);
-  } else if (keyword == "element") {
-    read_element(rest);
-  } else if (keyword == "property") {
-    read_property(rest);
-  } else {
-    fail("unknown keyword " + text::in_quotes(keyword) + " in the header",
-         "the meaning of the data depends on every line of it", "correct the line");
-  }
-  return false;
-}
-
-void HeaderReader::read_encoding(std::string_view words) {
-  static constexpr std::array<std::string_view, 3> kNames = {"ascii", "binary_little_endian", "binary_big_endian"};
-  const std::string_view name = text::take_word(words);
-  const std::string_view version = text::take_word(words);
-  const auto found = std::find(kNames.begin(), kNames.end(), name);
-  if (found == kNames.end() || version != "1.0") {
-    fail("unknown format " + text::in_quotes(std::string(name) + " " + std::string(version)),
-         "exactff reads ascii, binary_little_endian and binary_big_endian, each of version 1.0", "convert the file");
-  }
-  header_.encoding = static_cast<PlyEncoding>(found - kNames.begin());
-  has_encoding_ = true;
-}
-
-// exactff's own convention: other programs pass over comments.
-void HeaderReader::read_comment(std::string_view words) {
-  if (text::take_word(words) != "patch") return;
-  const auto number = whole_number(text::take_word(words));
-  const std::string_view name = text::trimmed(words);
-  if (number && !name.empty()) header_.patch_names.try_emplace(*number, name);
-}
-
-void HeaderReader::read_element(std::string_view words) {
-  const std::string_view name = text::take_word(words);
-  const std::string_view word = text::take_word(words);
-  const auto count = whole_number(word);
-  if (name.empty() || !count || *count < 0) {
-    fail("an element needs a name and a count, and " + text::in_quotes(word) + " is no count",
-         "the data are read by the counts of the header", "write element NAME COUNT");
-  }
-  const auto same = [&](const PlyElement& element) { return element.name == name; };
-  if (std::any_of(header_.elements.begin(), header_.elements.end(), same))
-    fail("element " + text::in_quotes(name) + " is declared twice", "it is not clear which one counts", "remove one");
-  if (header_.elements.size() == kMost) fail("more than 1000 elements", "no program needs them", "is it a PLY file?");
-  header_.elements.push_back({std::string(name), static_cast<std::uint64_t>(*count), lines_.number(), {}});
-}
-
-PlyType HeaderReader::type_named(std::string_view name) {
-  const auto* const found = std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& t) { return t.first == name; });
-  if (found != kTypes.end()) return found->second;
-  fail("unknown type " + text::in_quotes(name), "the size of the data depends on it",
-       "use char, uchar, short, ushort, int, uint, float or double");
-}
-
-void HeaderReader::read_property(std::string_view words) {
-  if (header_.elements.empty())
-    fail("a property before any element", "it does not belong to anything", "declare its element first");
-  PlyProperty property;
-  std::string_view type = text::take_word(words);
-  if (type == "list") {
-    property.count_type = type_named(text::take_word(words));
-    type = text::take_word(words);
-    if (!is_whole(*property.count_type))
-      fail("the count of a list is not an integer", "it counts the items of the list", "use uchar or int");
-  }
-  property.type = type_named(type);
-  property.name = text::take_word(words);
-  if (property.name.empty()) fail("a property without a name", "its data have no meaning", "give it a name");
-  PlyElement& element = header_.elements.back();
-  if (element.find(property.name)) {
-    fail("property " + text::in_quotes(property.name) + " is declared twice", "it is not clear which one counts",
-         "remove one");
-  }
-  if (element.properties.size() == kMost)
-    fail("more than 1000 properties", "no program needs them", "is it a PLY file?");
-  element.properties.push_back(std::move(property));
-}
-
-PlyHeader HeaderReader::finished() {
-  if (!has_encoding_) fail("the header has no format", "it says how to read the data", "add format ascii 1.0");
-  header_.lines = lines_.number();
-  header_.bytes = lines_.bytes();
-  return std::move(header_);
-}
 
 }  // namespace
 

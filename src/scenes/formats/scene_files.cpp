@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 
+#include "files/numpy.h"
 #include "formats/mesh_input.h"
 #include "formats/stl.h"
 #include "formats/writers.h"
@@ -12,6 +13,7 @@
 #include "scene/scene.h"
 #include "text/names.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "text/text_lines.h"
 
 namespace exactff {
@@ -22,8 +24,11 @@ enum class Format { kObj, kGltf, kPly, kStlText, kStlBinary, kOff, kView3d };
 
 // A format that exactff does not read.
 struct ForeignKind {
-  std::string_view name;       // "a Collada file"
-  std::string_view converter;  // completes "convert it, for example with ..."
+  std::string_view name;                        // "a Collada file"
+  std::string_view converter;                   // completes "convert it, for example with ..."
+  std::string_view extensions = {};             // words, which count where the content tells nothing
+  std::array<std::string_view, 2> starts = {};  // the first bytes of a file
+  std::string_view element = {};                // in a file that begins with "<"
 };
 
 constexpr std::size_t kLookedAt = std::size_t{1} << 16;  // bytes of a file that show its format
@@ -35,140 +40,89 @@ constexpr std::string_view kMeshio =
 constexpr std::string_view kScript =
     "a script that gives exactff.Scene its polygons and their names (data/guide/scenes.md shows one)";
 constexpr std::string_view kCad = "FreeCAD, or gmsh IN -2 -o OUT.stl";
-constexpr std::string_view kUnpack = "its unpacker";
 
-constexpr ForeignKind kGmsh{"a Gmsh file", kMeshio};
-constexpr ForeignKind kFluent{"a Fluent mesh", kMeshio};
-constexpr ForeignKind kMsh{"a Gmsh or Fluent mesh (.msh)", kMeshio};
-constexpr ForeignKind kAbaqus{"an Abaqus or CalculiX file", kMeshio};
-constexpr ForeignKind kInp{"an Abaqus, CalculiX or AVS file (.inp)", kMeshio};
-constexpr ForeignKind kNastran{"a Nastran file", kMeshio};
-constexpr ForeignKind kVtk{"a VTK file", kMeshio};
-constexpr ForeignKind kVtp{"a VTK file of polygons", "ParaView: save as PLY, without names"};
-constexpr ForeignKind kCollada{"a Collada file", kAssimp};
-constexpr ForeignKind kFbx{"an FBX file", kAssimp};
-constexpr ForeignKind k3ds{"a 3DS file", kAssimp};
-constexpr ForeignKind kX3d{"an X3D file", kAssimp};
-constexpr ForeignKind kVrml{"a VRML file", kAssimp};
-constexpr ForeignKind kUsd{"a USD file", kBlender};
-constexpr ForeignKind kBlend{"a Blender file", kBlender};
-constexpr ForeignKind kRhino{"a Rhino file (.3dm)", "Rhino: export Wavefront (.obj)"};
-constexpr ForeignKind kStep{"a STEP file", kCad};
-constexpr ForeignKind kIges{"an IGES file", kCad};
-constexpr ForeignKind kDxf{"a DXF file", kCad};
-constexpr ForeignKind kDwg{"a DWG file", kCad};
+// Those that are recognised below, not only by the table.
+constexpr ForeignKind kAbaqus{"an Abaqus or CalculiX file", kMeshio, "", {"*HEADING", "*Heading"}};
+constexpr ForeignKind kNastran{"a Nastran file", kMeshio, ".bdf .nas .fem"};
+constexpr ForeignKind kVtk{"a VTK file", kMeshio, ".vtk .vtu", {"# vtk DataFile"}, "<VTKFile"};
+constexpr ForeignKind kVtp{"a VTK file of polygons", "ParaView: save as PLY, without names", ".vtp"};
+constexpr ForeignKind k3ds{"a 3DS file", kAssimp, ".3ds"};
+constexpr ForeignKind kStep{"a STEP file", kCad, ".stp .step"};
+constexpr ForeignKind kIges{"an IGES file", kCad, ".igs .iges"};
+constexpr ForeignKind kDxf{"a DXF file", kCad, ".dxf", {"AutoCAD Binary DXF"}};
 constexpr ForeignKind kIfc{"an IFC file",
-                           "IfcConvert --use-element-names IN OUT.obj, which keeps the names of elements"};
-constexpr ForeignKind kGbxml{"a gbXML file", "a BIM program: export Wavefront (.obj)"};
+                           "IfcConvert --use-element-names IN OUT.obj, which keeps the names of elements", ".ifc"};
 constexpr ForeignKind kEnergyPlus{"an EnergyPlus input file",
                                   "geomeppy in Python, whose surfaces have a Name and coords, and exactff.Scene "
-                                  "(data/guide/scenes.md shows a script)"};
-constexpr ForeignKind kEpJson{"an EnergyPlus input file (epJSON)", kScript};
-constexpr ForeignKind kRadiance{"a Radiance scene", kScript};
-constexpr ForeignKind kPbrt{"a pbrt scene", "pbrt --toply IN, which writes its triangle meshes as PLY files"};
-constexpr ForeignKind kMitsuba{"a Mitsuba scene", "the OBJ and PLY files that it names, which exactff reads"};
+                                  "(data/guide/scenes.md shows a script)",
+                                  ".idf .imf"};
+constexpr ForeignKind kEpJson{"an EnergyPlus input file (epJSON)", kScript, ".epjson"};
+constexpr ForeignKind kRadiance{"a Radiance scene", kScript, ".rad"};
+constexpr ForeignKind kPbrt{"a pbrt scene", "pbrt --toply IN, which writes its triangle meshes as PLY files", ".pbrt"};
 constexpr ForeignKind kFoam{"an OpenFOAM file",
                             "surfaceMeshExtract OUT.obj in the folder of the case, which keeps the names of patches"};
-constexpr ForeignKind kHdf{"an HDF5 file (CGNS, MED, XDMF data)", kMeshio};
-constexpr ForeignKind kNetCdf{"a NetCDF file (Exodus)", kMeshio};
 
-struct Signature {
-  std::string_view bytes;
-  ForeignKind kind;
-};
-
-// The first bytes of a file.
-constexpr std::array<Signature, 30> kSignatures = {{
-    {"# vtk DataFile", kVtk},
-    {"Kaydara FBX Binary", kFbx},
-    {"; FBX", kFbx},
-    {"BLENDER", kBlend},
-    {"xof 0", {"a DirectX file", kAssimp}},
-    {"#VRML", kVrml},
-    {"#X3D", kX3d},
-    {"#Inventor", {"an Open Inventor file", kAssimp}},
-    {"PXR-USDC", kUsd},
-    {"#usda", kUsd},
-    {"//Maya ASCII", {"a Maya file", "Maya: export Wavefront (.obj)"}},
-    {"3D Geometry File Format", kRhino},
-    {"AutoCAD Binary DXF", kDxf},
-    {"AC10", kDwg},
-    {"DBRep_DrawableShape", {"an Open CASCADE file (.brep)", kCad}},
-    {"CASCADE Topology", {"an Open CASCADE file (.brep)", kCad}},
-    {"$MeshFormat", kGmsh},
-    {"(0 \"", kFluent},
-    {"MeshVersionFormatted", {"a Medit file", kMeshio}},
-    {"*HEADING", kAbaqus},
-    {"*Heading", kAbaqus},
-    {"\x89HDF\r\n\x1a\n", kHdf},
-    {"CDF\x01", kNetCdf},
-    {"CDF\x02", kNetCdf},
-    {"\x93NUMPY", {"a NumPy file", "meshio or trimesh in Python"}},
-    {"PK\x03\x04", {"a ZIP archive (3MF, USDZ, FCStd, KMZ or other)", kUnpack}},
-    {"\x1f\x8b", {"a file compressed by gzip", "gunzip"}},
-    {"\x28\xb5\x2f\xfd", {"a file compressed by zstd (a new Blender file?)", "unzstd, or Blender: export Wavefront"}},
-    {"BZh", {"a file compressed by bzip2", "bunzip2"}},
-    {"\xfd"
-     "7zXZ",
-     {"a file compressed by xz", "unxz"}},
+constexpr std::array<ForeignKind, 42> kForeign = {{
+    kAbaqus,
+    kNastran,
+    kVtk,
+    kVtp,
+    k3ds,
+    kStep,
+    kIges,
+    kDxf,
+    kIfc,
+    kEnergyPlus,
+    kEpJson,
+    kRadiance,
+    kPbrt,
+    {"a Gmsh file", kMeshio, "", {"$MeshFormat"}},
+    {"a Fluent mesh", kMeshio, "", {"(0 \""}},
+    {"a Gmsh or Fluent mesh (.msh)", kMeshio, ".msh"},
+    {"an Abaqus, CalculiX or AVS file (.inp)", kMeshio, ".inp"},
+    {"a Medit file", kMeshio, "", {"MeshVersionFormatted"}},
+    {"an HDF5 file (CGNS, MED, XDMF data)", kMeshio, ".med .cgns", {"\x89HDF\r\n\x1a\n"}},
+    {"a NetCDF file (Exodus)", kMeshio, ".exo", {"CDF\x01", "CDF\x02"}},
+    {"a NumPy file", "meshio or trimesh in Python", "", {"\x93NUMPY"}},
+    {"a Collada file", kAssimp, ".dae", {}, "<COLLADA"},
+    {"an FBX file", kAssimp, ".fbx", {"Kaydara FBX Binary", "; FBX"}},
+    {"an X3D file", kAssimp, ".x3d", {"#X3D"}, "<X3D"},
+    {"an XDMF file", kMeshio, "", {}, "<Xdmf"},
+    {"a VRML file", kAssimp, ".wrl", {"#VRML"}},
+    {"a DirectX file", kAssimp, "", {"xof 0"}},
+    {"an Open Inventor file", kAssimp, "", {"#Inventor"}},
+    {"a USD file", kBlender, ".usd .usda .usdc", {"PXR-USDC", "#usda"}},
+    {"a Blender file", kBlender, ".blend", {"BLENDER"}},
+    {"a Maya file", "Maya: export Wavefront (.obj)", "", {"//Maya ASCII"}},
+    {"a Rhino file (.3dm)", "Rhino: export Wavefront (.obj)", ".3dm", {"3D Geometry File Format"}},
+    {"a SketchUp file", "SketchUp: export OBJ", ".skp"},
+    {"a DWG file", kCad, ".dwg", {"AC10"}},
+    {"an Open CASCADE file (.brep)", kCad, "", {"DBRep_DrawableShape", "CASCADE Topology"}},
+    {"a gbXML file", "a BIM program: export Wavefront (.obj)", ".gbxml", {}, "<gbXML"},
+    {"a Mitsuba scene", "the OBJ and PLY files that it names, which exactff reads", "", {}, "<scene version"},
+    {"a ZIP archive (3MF, USDZ, FCStd, KMZ or other)", "its unpacker", "", {"PK\x03\x04"}},
+    {"a file compressed by gzip", "gunzip", "", {"\x1f\x8b"}},
+    {"a file compressed by zstd (a new Blender file?)",
+     "unzstd, or Blender: export Wavefront",
+     "",
+     {"\x28\xb5\x2f\xfd"}},
+    {"a file compressed by bzip2", "bunzip2", "", {"BZh"}},
+    {"a file compressed by xz", "unxz", "", {"\xfd\x37zXZ"}},
 }};
 
-struct Extension {
-  std::string_view name;
-  ForeignKind kind;
-};
-
-// They count where the content tells nothing, and is not that of an OBJ file.
-constexpr std::array<Extension, 35> kExtensions = {{
-    {".inp", kInp},
-    {".bdf", kNastran},
-    {".nas", kNastran},
-    {".fem", kNastran},
-    {".rad", kRadiance},
-    {".idf", kEnergyPlus},
-    {".imf", kEnergyPlus},
-    {".epjson", kEpJson},
-    {".msh", kMsh},
-    {".vtk", kVtk},
-    {".vtu", kVtk},
-    {".vtp", kVtp},
-    {".pbrt", kPbrt},
-    {".dae", kCollada},
-    {".3ds", k3ds},
-    {".fbx", kFbx},
-    {".stp", kStep},
-    {".step", kStep},
-    {".igs", kIges},
-    {".iges", kIges},
-    {".ifc", kIfc},
-    {".gbxml", kGbxml},
-    {".dxf", kDxf},
-    {".dwg", kDwg},
-    {".3dm", kRhino},
-    {".blend", kBlend},
-    {".wrl", kVrml},
-    {".x3d", kX3d},
-    {".usd", kUsd},
-    {".usda", kUsd},
-    {".usdc", kUsd},
-    {".med", kHdf},
-    {".cgns", kHdf},
-    {".exo", kNetCdf},
-    {".skp", {"a SketchUp file", "SketchUp: export OBJ"}},
-}};
+// The first of the table that has it.
+template <class HasIt>
+std::optional<ForeignKind> find_kind(const HasIt& has_it) {
+  const auto* const found = std::ranges::find_if(kForeign, has_it);
+  return found == kForeign.end() ? std::nullopt : std::optional(*found);
+}
 
 bool contains(std::string_view bytes, std::string_view part) { return bytes.find(part) != std::string_view::npos; }
 
-// STEP and IFC are schemes of one file format.
-ForeignKind step_kind(std::string_view head) { return contains(head, "IFC") ? kIfc : kStep; }
-
 ForeignKind markup_kind(std::string_view head) {
-  if (contains(head, "<VTKFile")) return contains(head, "\"PolyData\"") ? kVtp : kVtk;
-  if (contains(head, "<COLLADA")) return kCollada;
-  if (contains(head, "<X3D")) return kX3d;
-  if (contains(head, "<Xdmf")) return {"an XDMF file", kMeshio};
-  if (contains(head, "<gbXML")) return kGbxml;
-  if (contains(head, "<scene version")) return kMitsuba;
+  if (contains(head, "<VTKFile") && contains(head, "\"PolyData\"")) return kVtp;
+  const auto has_it = [&](const ForeignKind& kind) { return !kind.element.empty() && contains(head, kind.element); };
+  if (const auto kind = find_kind(has_it)) return *kind;
   if (contains(head, "<html") || contains(head, "<!DOCTYPE html") || contains(head, "<!doctype html"))
     return {"a web page", "the page's own link to the file"};
   return {"an XML file", kAssimp};
@@ -213,8 +167,8 @@ bool is_iges(std::string_view head) {
 // A chunk 0x4D4D whose length is that of the file.
 bool is_3ds(std::string_view bytes) {
   if (bytes.size() < 6 || !bytes.starts_with("MM")) return false;
-  std::size_t length = 0;
-  for (std::size_t i = 6; i-- > 2;) length = length << 8U | static_cast<unsigned char>(bytes[i]);
+  std::uint32_t length = 0;
+  files::read_little_endian(bytes.substr(2), std::span(&length, 1));
   return length == bytes.size();
 }
 
@@ -307,21 +261,24 @@ Format format_of(std::string_view bytes, const std::filesystem::path& path) {
 std::optional<ForeignKind> foreign_kind(std::string_view bytes, const std::filesystem::path& path) {
   const std::string_view head = without_mark(bytes.substr(0, kLookedAt));
   if (is_binary_stl(bytes)) return std::nullopt;
-  for (const Signature& signature : kSignatures) {
-    if (head.starts_with(signature.bytes)) return signature.kind;
-  }
+  const auto starts = [&](std::string_view start) { return !start.empty() && head.starts_with(start); };
+  const auto starts_it = [&](const ForeignKind& kind) { return std::ranges::any_of(kind.starts, starts); };
+  if (const auto kind = find_kind(starts_it)) return kind;
   if (is_dxf(head)) return kDxf;
   if (is_iges(head)) return kIges;
   if (is_3ds(bytes)) return k3ds;
   const std::string_view start = without_blanks(head);
-  if (start.starts_with("ISO-10303-21;")) return step_kind(head);
+  if (start.starts_with("ISO-10303-21;")) return contains(head, "IFC") ? kIfc : kStep;  // schemes of one file format
   if (start.starts_with("<")) return markup_kind(head);
   if (is_gltf(start, lower_extension(path))) return std::nullopt;
   if (start.starts_with("{")) return json_kind(head);
   if (format_of(bytes, path) != Format::kObj || is_obj_keyword(first_word(head))) return std::nullopt;
   const std::string extension = lower_extension(path);
-  const auto* const known = std::ranges::find(kExtensions, extension, &Extension::name);
-  if (known != kExtensions.end()) return known->kind;
+  const auto has_extension = [&](const ForeignKind& kind) {
+    const std::vector<std::string_view> all = text::words(kind.extensions);
+    return std::ranges::find(all, extension) != all.end();
+  };
+  if (const auto kind = find_kind(has_extension)) return kind;
   return extension == ".obj" ? std::nullopt : text_kind(head);
 }
 
@@ -340,22 +297,6 @@ void write_wavefront(const Scene& scene, const std::filesystem::path& path, Scen
     result.files.push_back({mtl, formats::write_mtl(scene, losses)});
   }
   result.files.push_back({path, formats::write_obj(scene, mtl.filename().string(), losses)});
-}
-
-// In a comment.
-void state_unit(std::string& bytes, std::string_view extension, Unit unit, formats::Losses& losses) {
-  if (unit == Unit::kNone) return;
-  const std::string text = "unit " + std::string(name_of(unit)) + '\n';
-  if (extension == ".obj") {
-    bytes.insert(0, "# " + text);
-  } else if (extension == ".off") {
-    bytes.insert(bytes.find('\n') + 1, "# " + text);
-  } else if (extension == ".ply") {
-    bytes.insert(bytes.find('\n', bytes.find('\n') + 1) + 1, "comment " + text);
-  } else {
-    losses.add("the " + text.substr(0, text.size() - 1) + " is lost", "the format has no place for it",
-               "give --unit where you read it");
-  }
 }
 
 struct Writer {
@@ -379,13 +320,12 @@ SceneFiles scene_files(const Scene& scene, const std::filesystem::path& path, En
                                           [&](const Writer& candidate) { return candidate.extension == extension; });
   const bool wavefront = extension == ".obj";
   if (!wavefront && writer == kWriters.end()) {
-    throw InputError({path.string(), 0, "no format is known for the extension " + text::in_quotes(extension),
-                      "the extension says which format to write",
-                      "name a file .obj, .ply, .stl, .off or .vs3; glTF is only read"});
+    text::refuse(path, "no format is known for the extension " + text::in_quotes(extension),
+                 "the extension says which format to write",
+                 "name a file .obj, .ply, .stl, .off or .vs3; glTF is only read");
   }
   if (encoding == Encoding::kBinary && (wavefront || writer->binary == nullptr)) {
-    throw InputError(
-        {path.string(), 0, "the format has no binary form", "only PLY and STL have one", "leave the encoding out"});
+    text::refuse(path, "the format has no binary form", "only PLY and STL have one", "leave the encoding out");
   }
   SceneFiles result;
   formats::Losses losses(path);
@@ -402,7 +342,10 @@ SceneFiles scene_files(const Scene& scene, const std::filesystem::path& path, En
                "only lightmaps need them; write OBJ to keep set 0");
     break;
   }
-  state_unit(result.files.back().bytes, extension, scene.unit(), losses);
+  if (scene.unit() != Unit::kNone && (extension == ".stl" || extension == ".vs3")) {
+    losses.add("the unit " + std::string(name_of(scene.unit())) + " is lost", "the format has no place for it",
+               "give --unit where you read it");
+  }
   result.losses = losses.take();
   return result;
 }
@@ -420,34 +363,20 @@ Scene read_scene(std::string_view bytes, const std::filesystem::path& path, cons
   const kernel::StandardArithmetic arithmetic;
   const std::string file = path.string();
   if (bytes.empty())
-    throw InputError({file, 0, "is empty", "there is nothing to compute with", std::string("give ") + kAnyFormat});
+    text::refuse(file, "is empty", "there is nothing to compute with", std::string("give ") + kAnyFormat);
   if (const auto kind = formats::foreign_kind(bytes, path)) {
-    throw InputError({file, 0, "is " + std::string(kind->name),
-                      std::string("exactff reads OBJ, glTF, PLY, STL, OFF and View3D"),
-                      "convert it, for example with " + std::string(kind->converter)});
+    text::refuse(file, "is " + std::string(kind->name), "exactff reads OBJ, glTF, PLY, STL, OFF and View3D",
+                 "convert it, for example with " + std::string(kind->converter));
   }
   const formats::Format format = formats::format_of(bytes, path);
-  switch (format) {
-    case formats::Format::kPly:
-      return formats::read_ply(bytes, path, options);
-    case formats::Format::kStlBinary:
-      return formats::read_stl_binary(bytes, path, options);
-    case formats::Format::kGltf:
-      return formats::read_gltf(bytes, path, options);
-    default:
-      break;
-  }
+  if (format == formats::Format::kPly) return formats::read_ply(bytes, path, options);
+  if (format == formats::Format::kStlBinary) return formats::read_stl_binary(bytes, path, options);
+  if (format == formats::Format::kGltf) return formats::read_gltf(bytes, path, options);
   text::require_text(bytes, file, kAnyFormat);
-  switch (format) {
-    case formats::Format::kStlText:
-      return formats::read_stl_text(bytes, path, options);
-    case formats::Format::kOff:
-      return formats::read_off(bytes, path, options);
-    case formats::Format::kView3d:
-      return formats::read_view3d(bytes, path, options);
-    default:
-      return formats::read_obj(bytes, path, options);
-  }
+  if (format == formats::Format::kStlText) return formats::read_stl_text(bytes, path, options);
+  if (format == formats::Format::kOff) return formats::read_off(bytes, path, options);
+  if (format == formats::Format::kView3d) return formats::read_view3d(bytes, path, options);
+  return formats::read_obj(bytes, path, options);
 }
 
 Scene read_scene(const std::filesystem::path& path, const SceneOptions& options) {

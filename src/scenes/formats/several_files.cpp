@@ -1,7 +1,6 @@
 // Scenes of several files, and units that files state.
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <set>
 #include <utility>
 

@@ -6,19 +6,19 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cctype>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <utility>
 #include <vector>
 
 #include "exactff/geometry.h"
+#include "files/numpy.h"
 #include "formats/mesh_input.h"
 #include "formats/writers.h"
 #include "kernel/vec.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff::formats {
 namespace {
@@ -31,9 +31,9 @@ class Triangles {
   explicit Triangles(MeshInput& input) : input_(input), positions_(input) {}
 
   void add(PatchId patch, const std::array<Vec3, 3>& corners, const FilePlace& place) {
-    std::vector<std::uint32_t> ring(3);
-    for (std::size_t i = 0; i < 3; ++i) ring[i] = positions_.vertex(corners[i], place);
-    input_.add_face(patch, std::move(ring), place);
+    std::vector<std::uint32_t> ring;
+    for (const Vec3& corner : corners) ring.push_back(positions_.vertex(corner, place));
+    input_.add_face(patch, input_.no_material(), std::move(ring), place);
   }
 
  private:
@@ -57,11 +57,70 @@ class StlTextReader {
   }
 
  private:
-  bool read_statement();
-  void start_solid();
-  void start_facet();
-  void read_vertex();
-  void end_facet();
+  // False at the end of the line.
+  bool read_statement() {
+    const std::string_view word = text::take_word(rest_);
+    if (word.empty()) return false;
+    if (same(word, "vertex")) {
+      read_vertex();
+    } else if (same(word, "facet")) {
+      start_facet();
+    } else if (same(word, "endfacet")) {
+      end_facet();
+    } else if (same(word, "outer")) {
+      expect("loop");
+    } else if (same(word, "solid")) {
+      start_solid();
+      return false;
+    } else if (!same(word, "endloop")) {
+      if (!same(word, "endsolid"))
+        fail("unknown keyword " + text::in_quotes(word), "it is no part of an STL file", "correct or remove the line");
+      return false;
+    }
+    return true;
+  }
+
+  // The name is the rest of the line.
+  void start_solid() {
+    ++solids_;
+    patch_.reset();
+    const std::string_view name = text::trimmed(rest_);
+    if (!name.empty()) {
+      name_ = name;
+    } else if (solids_ == 1) {
+      name_ = kDefaultPatch;
+    } else {
+      numbered_ = "solid_" + std::to_string(solids_);
+      name_ = numbered_;
+    }
+  }
+
+  void start_facet() {
+    if (in_facet_) fail("a facet within a facet", "endfacet is missing", "correct it");
+    in_facet_ = true;
+    facet_line_ = line_.number;
+    corner_count_ = 0;
+    expect("normal");
+    for (int i = 0; i < 3; ++i) (void)text::take_word(rest_);
+  }
+
+  void read_vertex() {
+    const Vec3 position = input_.take_point(rest_, line_.number, "write vertex x y z");
+    if (!in_facet_) return fail("a vertex outside a facet", "it belongs to no triangle", "write facet before it");
+    if (corner_count_ < 3) corners_[corner_count_] = position;
+    ++corner_count_;
+  }
+
+  void end_facet() {
+    if (!in_facet_) return fail("endfacet without a facet", "there is no triangle to end", "write facet before it");
+    in_facet_ = false;
+    if (corner_count_ != 3) {
+      return fail("a facet has " + text::counted(corner_count_, "vertex", "vertices"), "it is a triangle",
+                  "write three vertices");
+    }
+    if (!patch_) patch_ = input_.patch(name_);
+    triangles_.add(*patch_, corners_, at_line(facet_line_));
+  }
 
   static bool same(std::string_view word, std::string_view keyword) {
     const auto equal = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
@@ -92,85 +151,13 @@ class StlTextReader {
   std::size_t corner_count_ = 0;
 };
 
-// False at the end of the line.
-bool StlTextReader::read_statement() {
-  const std::string_view word = text::take_word(rest_);
-  if (word.empty()) return false;
-  if (same(word, "vertex")) {
-    read_vertex();
-  } else if (same(word, "facet")) {
-    start_facet();
-  } else if (same(word, "endfacet")) {
-    end_facet();
-  } else if (same(word, "outer")) {
-    expect("loop");
-  } else if (same(word, "solid")) {
-    start_solid();
-    return false;
-  } else if (!same(word, "endloop")) {
-    if (!same(word, "endsolid"))
-      fail("unknown keyword " + text::in_quotes(word), "it is no part of an STL file", "correct or remove the line");
-    return false;
-  }
-  return true;
-}
+// The numbers of the triangle that begins at `offset`: a normal and three vertices.
+using Numbers = std::array<float, 12>;
 
-// The name is the rest of the line.
-void StlTextReader::start_solid() {
-  ++solids_;
-  patch_.reset();
-  const std::string_view name = text::trimmed(rest_);
-  if (!name.empty()) {
-    name_ = name;
-  } else if (solids_ == 1) {
-    name_ = kDefaultPatch;
-  } else {
-    numbered_ = "solid_" + std::to_string(solids_);
-    name_ = numbered_;
-  }
-}
-
-void StlTextReader::start_facet() {
-  if (in_facet_) fail("a facet within a facet", "endfacet is missing", "correct it");
-  in_facet_ = true;
-  facet_line_ = line_.number;
-  corner_count_ = 0;
-  expect("normal");
-  for (int i = 0; i < 3; ++i) (void)text::take_word(rest_);
-}
-
-void StlTextReader::read_vertex() {
-  const Vec3 position = input_.take_point(rest_, line_.number, "write vertex x y z");
-  if (!in_facet_) return fail("a vertex outside a facet", "it belongs to no triangle", "write facet before it");
-  if (corner_count_ < 3) corners_[corner_count_] = position;
-  ++corner_count_;
-}
-
-void StlTextReader::end_facet() {
-  if (!in_facet_) return fail("endfacet without a facet", "there is no triangle to end", "write facet before it");
-  in_facet_ = false;
-  if (corner_count_ != 3) {
-    return fail("a facet has " + text::counted(corner_count_, "vertex", "vertices"), "it is a triangle",
-                "write three vertices");
-  }
-  if (!patch_) patch_ = input_.patch(name_);
-  triangles_.add(*patch_, corners_, at_line(facet_line_));
-}
-
-float little_endian_float(const char* bytes) {
-  std::array<char, sizeof(float)> raw{};
-  std::memcpy(raw.data(), bytes, raw.size());
-  if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
-  return std::bit_cast<float>(raw);
-}
-
-// The vertices of the triangle that begins at `offset`; the normal comes before them.
 std::array<Vec3, 3> corners_at(std::string_view bytes, std::size_t offset) {
-  std::array<double, 9> values{};
-  for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] = little_endian_float(bytes.data() + offset + (3 + i) * sizeof(float));
-  return {Vec3{values[0], values[1], values[2]}, Vec3{values[3], values[4], values[5]},
-          Vec3{values[6], values[7], values[8]}};
+  Numbers n{};
+  files::read_little_endian(bytes.substr(offset), std::span<float>(n));
+  return {Vec3{n[3], n[4], n[5]}, Vec3{n[6], n[7], n[8]}, Vec3{n[9], n[10], n[11]}};
 }
 
 }  // namespace
@@ -219,9 +206,7 @@ Scene read_stl_binary(std::string_view bytes, const std::filesystem::path& path,
   return input.build();
 }
 
-// --- Writer ---
-
-// STL: in text with doubles and one solid for each patch; in binary with floats.
+// --- Writer: in text with doubles and one solid for each patch; in binary with floats ---
 
 namespace {
 
@@ -245,14 +230,9 @@ std::array<Vec3, 3> corners_of(const Scene& scene, const OutputFace& face) {
 }
 
 void append_facet(std::string& out, const std::array<Vec3, 3>& corners) {
-  out += "  facet normal";
-  append_point(out, rough_normal(corners));
-  out += "\n    outer loop\n";
-  for (const Vec3& corner : corners) {
-    out += "      vertex";
-    append_point(out, corner);
-    out += '\n';
-  }
+  append_point(out, "  facet normal ", rough_normal(corners));
+  out += "    outer loop\n";
+  for (const Vec3& corner : corners) append_point(out, "      vertex ", corner);
   out += "    endloop\n  endfacet\n";
 }
 
@@ -263,15 +243,6 @@ std::vector<std::vector<std::size_t>> faces_by_patch(const Scene& scene, const s
   return places;
 }
 
-void append_little_endian(std::string& out, std::uint32_t value, std::size_t bytes) {
-  for (std::size_t i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i));
-}
-
-void append_floats(std::string& out, const Vec3& v) {
-  for (const double c : {v.x, v.y, v.z})
-    append_little_endian(out, std::bit_cast<std::uint32_t>(static_cast<float>(c)), sizeof(float));
-}
-
 bool is_float(double value) { return static_cast<double>(static_cast<float>(value)) == value; }
 
 void tell_rounding(const Scene& scene, Losses& losses) {
@@ -279,8 +250,8 @@ void tell_rounding(const Scene& scene, Losses& losses) {
   std::size_t rounded = 0;
   for (const Vec3& v : scene.vertices()) {
     if (kernel::max_norm(v) > kLargest) {
-      throw InputError({losses.file(), 0, "a coordinate exceeds the largest float", "binary STL has only floats",
-                        "write STL as text, or PLY"});
+      text::refuse(losses.file(), "a coordinate exceeds the largest float", "binary STL has only floats",
+                   "write STL as text, or PLY");
     }
     if (!is_float(v.x) || !is_float(v.y) || !is_float(v.z)) ++rounded;
   }
@@ -316,12 +287,15 @@ std::string write_stl_binary(const Scene& scene, Losses& losses) {
   tell_rounding(scene, losses);
   std::string out = "written by " + text::program_version();
   out.resize(StlLayout::kTitle, ' ');
-  append_little_endian(out, static_cast<std::uint32_t>(faces.size()), 4);
+  const auto count = static_cast<std::uint32_t>(faces.size());
+  out += files::little_endian(std::span(&count, 1));
   for (const OutputFace& face : faces) {
-    const std::array<Vec3, 3> corners = corners_of(scene, face);
-    append_floats(out, rough_normal(corners));
-    for (const Vec3& corner : corners) append_floats(out, corner);
-    append_little_endian(out, 0, 2);
+    const auto [a, b, c] = corners_of(scene, face);
+    Numbers numbers{};
+    auto next = numbers.begin();
+    for (const Vec3& v : {rough_normal({a, b, c}), a, b, c})
+      for (const double number : {v.x, v.y, v.z}) *next++ = static_cast<float>(number);
+    (out += files::little_endian(std::span<const float>(numbers))).append(2, '\0');
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "files/numpy.h"
 #include "kernel/expect.h"
 
 namespace exactff::formats {
@@ -18,8 +19,8 @@ struct StlLayout {
   // Requires kHead bytes.
   static std::size_t triangle_count(std::string_view bytes) {
     EXACTFF_EXPECT(bytes.size() >= kHead);
-    std::size_t count = 0;
-    for (std::size_t i = kHead; i-- > kTitle;) count = count << 8U | static_cast<unsigned char>(bytes[i]);
+    std::uint32_t count = 0;
+    files::read_little_endian(bytes.substr(kTitle), std::span(&count, 1));
     return count;
   }
 };

@@ -109,24 +109,247 @@ class View3dReader {
  public:
   View3dReader(std::string_view text, MeshInput& input) : input_(input), lines_(text) {}
 
-  Scene run();
+  Scene run() {
+    while (lines_.next(line_)) {
+      rest_ = line_.text.substr(0, line_.text.find('!'));
+      if (!read_record()) break;
+    }
+    for (const Vec3& vertex : vertices_) input_.add_vertex(vertex, {});
+    add_surfaces();
+    Scene scene = input_.build();
+    check_subsurfaces(scene);
+    return scene;
+  }
 
  private:
-  bool read_record();
-  void check_number(std::string_view what, std::size_t expected);
-  void check_geometry();
-  void read_vertex();
-  void read_surface(bool obstructs_only);
-  void read_ring(Surface& surface);
-  void read_obstruction(Surface& surface);
-  std::size_t take_reference(const char* what);
-  MaterialId take_emittance();
-  MaterialId obstruction_material();
-  void add_surfaces();
-  void cut_from_base(std::size_t place);
-  PatchId patch_of(std::size_t place);
-  std::string distinct_name(std::size_t place);
-  void check_subsurfaces(const Scene& scene) const;
+  // False at the end of the data. As in View3D, only the first letter counts.
+  bool read_record() {
+    const std::string_view word = text::take_word(rest_);
+    if (word.empty()) return true;
+    switch (std::toupper(static_cast<unsigned char>(word.front()))) {
+      case 'V':
+        read_vertex();
+        return true;
+      case 'S':
+        read_surface(false);
+        return true;
+      case 'O':
+        read_surface(true);
+        return true;
+      case 'F':
+        check_geometry();
+        return true;
+      case 'T':  // title
+      case 'C':  // settings of a run
+      case '/':  // comment
+        return true;
+      case 'E':
+      case '*':
+        return false;
+      case 'M':
+      case 'N':
+        fail("record " + text::in_quotes(word) + ": masking and null surfaces are not read",
+             "they hide a part of a surface from some others only", "cut the surface, or remove the record");
+        return true;
+      default:
+        fail("unknown record " + text::in_quotes(word), "View3D files have the records T, C, F, V, S, O and E",
+             "remove it, or begin the line with !");
+        return true;
+    }
+  }
+
+  void check_number(std::string_view what, std::size_t expected) {
+    const std::string_view word = text::take_word(rest_);
+    const auto number = whole_number(word);
+    if (number && *number >= 0 && static_cast<std::size_t>(*number) == expected) return;
+    fail(std::string(what) + " " + text::in_quotes(word) + " is out of sequence",
+         "View3D numbers them from 1 without gaps", "its number must be " + std::to_string(expected));
+  }
+
+  void check_geometry() {
+    const std::string_view geometry = text::take_word(rest_);
+    if (geometry == "3") return;
+    if (text::in_lower_case(geometry) == "3a") {
+      input_.give_up(
+          at_line(line_.number), "geometry '3a' is not read",
+          "it gives each surface by a point, an azimuth, a tilt and sizes, so corners would have to be rounded",
+          "write the corners as vertices, F 3");
+    }
+    input_.give_up(at_line(line_.number), "geometry " + text::in_quotes(geometry) + " is not read",
+                   "exactff reads vertices and surfaces in three dimensions, F 3", "convert the file");
+  }
+
+  void read_vertex() {
+    check_number("vertex", vertices_.size() + 1);
+    vertices_.push_back(input_.take_point(rest_, line_.number, "write V number x y z"));
+  }
+
+  void read_surface(bool obstructs_only) {
+    check_number("surface", surfaces_.size() + 1);
+    Surface surface;
+    surface.line = line_.number;
+    surface.obstructs_only = obstructs_only;
+    read_ring(surface);
+    if (obstructs_only) {
+      read_obstruction(surface);
+    } else {
+      surface.base = take_reference("base");
+      surface.combined_with = take_reference("combination");
+      surface.material = take_emittance();
+      surface.name = text::take_word(rest_);
+    }
+    if (surface.name.empty() && !obstructs_only) surface.name = "surface_" + std::to_string(surfaces_.size() + 1);
+    surfaces_.push_back(std::move(surface));
+  }
+
+  // The fourth vertex of a triangle is 0.
+  void read_ring(Surface& surface) {
+    for (int i = 0; i < 4; ++i) {
+      const std::string_view word = text::take_word(rest_);
+      const auto index = whole_number(word);
+      if (i == 3 && index == 0) return;
+      if (!index || *index < 1 || *index > std::int64_t{0xFFFFFFFF}) {
+        return fail(text::in_quotes(word) + " is not the number of a vertex",
+                    "a surface has three or four vertices, counted from 1", "write the fourth one of a triangle as 0");
+      }
+      surface.ring.push_back(static_cast<std::uint32_t>(*index - 1));
+    }
+  }
+
+  // View3D passes over all that follows the vertices: a name, or base, combination, emittance and name as of a surface.
+  void read_obstruction(Surface& surface) {
+    surface.material = obstruction_material();
+    const std::vector<std::string_view> words = text::words(rest_);
+    const auto is_name = [](std::string_view word) {
+      return text::parse_number(word).fault != text::NumberFault::kNone;
+    };
+    const auto name = std::ranges::find_if(words, is_name);
+    surface.name = words.size() > 3 ? words[3] : name == words.end() ? kObstructions : *name;
+  }
+
+  std::size_t take_reference(const char* what) {
+    const std::string_view word = text::take_word(rest_);
+    const auto number = whole_number(word);
+    if (number && *number >= 0 && static_cast<std::uint64_t>(*number) <= surfaces_.size())
+      return static_cast<std::size_t>(*number);
+    fail(std::string(what) + " " + text::in_quotes(word) + " is not the number of a surface before this one",
+         "surfaces are combined with, or lie in, surfaces that the file has already defined", "correct it, or write 0");
+    return 0;
+  }
+
+  // Kd = 1 - emittance, as a decimal before it is rounded. Without a number, the surface has neither emittance nor
+  // name.
+  MaterialId take_emittance() {
+    const std::string_view word = text::take_word(rest_);
+    const text::ParsedNumber number = text::parse_number(word);
+    if (number.fault != text::NumberFault::kNone || number.value < 0.0 || number.value > 1.0) {
+      fail("emittance " + text::in_quotes(word) + " is not a number between 0 and 1",
+           "the reflectance of the surface is 1 - emittance", "correct it");
+      return input_.no_material();
+    }
+    const std::string emittance = fixed_decimal(number.value);
+    const auto [place, is_new] = materials_.try_emplace(emittance);
+    if (is_new) {
+      const double kd = text::parse_number(decimal_complement(emittance).value_or("1")).value;
+      place->second = input_.material({"emittance_" + emittance, {kd, kd, kd}, {}});
+    }
+    return place->second;
+  }
+
+  MaterialId obstruction_material() {
+    const auto [place, is_new] = materials_.try_emplace(std::string(kObstruction));
+    if (is_new) place->second = input_.material({std::string(kObstruction), {1.0, 1.0, 1.0}, {}});
+    return place->second;
+  }
+
+  void add_surfaces() {
+    for (std::size_t place = 0; place < surfaces_.size(); ++place) {
+      line_.number = surfaces_[place].line;
+      for (const std::uint32_t vertex : surfaces_[place].ring) {
+        if (vertex >= vertices_.size())
+          fail("vertex " + std::to_string(vertex + 1ULL) + " does not exist",
+               "the file has " + text::counted(vertices_.size(), "vertex", "vertices"), "correct the number");
+      }
+      if (surfaces_[place].base > 0) cut_from_base(place);
+    }
+    for (std::size_t place = 0; place < surfaces_.size(); ++place) {
+      const Surface& surface = surfaces_[place];
+      line_.number = surface.line;
+      std::vector<std::vector<std::uint32_t>> holes;
+      for (const std::size_t subsurface : surface.subsurfaces) holes.push_back(surfaces_[subsurface].ring);
+      input_.add_face(patch_of(place), surface.material, surface.ring, at_line(surface.line), std::move(holes));
+    }
+  }
+
+  void cut_from_base(std::size_t place) {
+    const std::size_t base = surfaces_[place].base - 1;
+    std::vector<Vec3> corners;
+    for (const std::size_t surface : {base, place}) {
+      for (const std::uint32_t vertex : surfaces_[surface].ring) {
+        if (vertex < vertices_.size()) corners.push_back(vertices_[vertex]);
+      }
+    }
+    if (surfaces_[base].obstructs_only) {
+      fail("the base of surface " + name_at(place) + " is an obstruction surface", "it has no area of its own to give",
+           "correct the base, or write 0");
+    } else if (!in_one_plane(corners)) {
+      fail("surface " + name_at(place) + " is not exactly in the plane of its base " + name_at(base),
+           "it cannot be cut out of it exactly", "move its vertices, or divide the base around it and write base 0");
+    } else {
+      surfaces_[base].subsurfaces.push_back(place);
+    }
+  }
+
+  PatchId patch_of(std::size_t place) {
+    const Surface& surface = surfaces_[place];
+    if (surface.obstructs_only) {
+      const auto known = obstructions_.find(surface.name);
+      if (known != obstructions_.end()) return known->second;
+      return obstructions_[surface.name] = input_.patch(distinct_name(place));
+    }
+    if (surface.combined_with == 0) return patches_[place] = input_.patch(distinct_name(place));
+    const auto other = patches_.find(surface.combined_with - 1);
+    if (other != patches_.end()) return other->second;
+    fail("surface " + name_at(place) + " is combined with surface " + name_at(surface.combined_with - 1),
+         "that one is itself combined, or an obstruction", "name the first surface of the combination");
+    return input_.patch(surface.name);
+  }
+
+  // View3D tells surfaces apart by their numbers, so names may be repeated.
+  std::string distinct_name(std::size_t place) {
+    std::string name = surfaces_[place].name;
+    if (names_.insert(name).second) return name;
+    name += "#" + std::to_string(place + 1);
+    while (!names_.insert(name).second) name += '_';
+    input_.warn(at_line(surfaces_[place].line), "surface " + name_at(place) + " has the name of another",
+                "names select patches", "it is called " + text::in_quotes(name));
+    return name;
+  }
+
+  // Faces are in the order of surfaces. A base that --skip-bad-faces has left out has nothing to lose.
+  void check_subsurfaces(const Scene& scene) const {
+    text::ProblemList problems;
+    for (std::size_t base = 0; base < surfaces_.size(); ++base) {
+      const FaceId base_face{static_cast<std::uint32_t>(base)};
+      if (surfaces_[base].subsurfaces.empty() || scene.face(base_face).shape == FaceShape::kSkipped) continue;
+      std::vector<FaceId> faces;
+      bool same_fronts = true;
+      for (const std::size_t place : surfaces_[base].subsurfaces) {
+        faces.push_back(FaceId{static_cast<std::uint32_t>(place)});
+        if (same_front(scene, base_face, faces.back())) continue;
+        same_fronts = false;
+        problems.add({input_.file(), surfaces_[place].line,
+                      "surface " + name_at(place) + " faces away from its base " + name_at(base),
+                      "it would be a part of the other side", "reverse the order of its vertices"});
+      }
+      if (same_fronts && !are_parts(scene, base_face, faces)) {
+        problems.add({input_.file(), surfaces_[base].line,
+                      "subsurfaces of surface " + name_at(base) + " overlap, or reach beyond it",
+                      "each point belongs to one surface", "correct them"});
+      }
+    }
+    problems.throw_if_any();
+  }
 
   void fail(std::string what, std::string why, std::string suggestion) {
     input_.fail(at_line(line_.number), std::move(what), std::move(why), std::move(suggestion));
@@ -147,244 +370,6 @@ class View3dReader {
   std::map<std::string, PatchId> obstructions_;  // by name
 };
 
-Scene View3dReader::run() {
-  while (lines_.next(line_)) {
-    rest_ = line_.text.substr(0, line_.text.find('!'));
-    if (!read_record()) break;
-  }
-  for (std::size_t i = 0; i < vertices_.size(); ++i) input_.add_vertex(vertices_[i], {});
-  add_surfaces();
-  Scene scene = input_.build();
-  check_subsurfaces(scene);
-  return scene;
-}
-
-// False at the end of the data. As in View3D, only the first letter counts.
-bool View3dReader::read_record() {
-  const std::string_view word = text::take_word(rest_);
-  if (word.empty()) return true;
-  switch (std::toupper(static_cast<unsigned char>(word.front()))) {
-    case 'V':
-      read_vertex();
-      return true;
-    case 'S':
-      read_surface(false);
-      return true;
-    case 'O':
-      read_surface(true);
-      return true;
-    case 'F':
-      check_geometry();
-      return true;
-    case 'T':  // title
-    case 'C':  // settings of a run
-    case '/':  // comment
-      return true;
-    case 'E':
-    case '*':
-      return false;
-    case 'M':
-    case 'N':
-      fail("record " + text::in_quotes(word) + ": masking and null surfaces are not read",
-           "they hide a part of a surface from some others only", "cut the surface, or remove the record");
-      return true;
-    default:
-      fail("unknown record " + text::in_quotes(word), "View3D files have the records T, C, F, V, S, O and E",
-           "remove it, or begin the line with !");
-      return true;
-  }
-}
-
-void View3dReader::check_geometry() {
-  const std::string_view geometry = text::take_word(rest_);
-  if (geometry == "3") return;
-  if (text::in_lower_case(geometry) == "3a") {
-    input_.give_up(
-        at_line(line_.number), "geometry '3a' is not read",
-        "it gives each surface by a point, an azimuth, a tilt and sizes, so corners would have to be rounded",
-        "write the corners as vertices, F 3");
-  }
-  input_.give_up(at_line(line_.number), "geometry " + text::in_quotes(geometry) + " is not read",
-                 "exactff reads vertices and surfaces in three dimensions, F 3", "convert the file");
-}
-
-void View3dReader::check_number(std::string_view what, std::size_t expected) {
-  const std::string_view word = text::take_word(rest_);
-  const auto number = whole_number(word);
-  if (number && *number >= 0 && static_cast<std::size_t>(*number) == expected) return;
-  fail(std::string(what) + " " + text::in_quotes(word) + " is out of sequence",
-       "View3D numbers them from 1 without gaps", "its number must be " + std::to_string(expected));
-}
-
-void View3dReader::read_vertex() {
-  check_number("vertex", vertices_.size() + 1);
-  vertices_.push_back(input_.take_point(rest_, line_.number, "write V number x y z"));
-}
-
-void View3dReader::read_surface(bool obstructs_only) {
-  check_number("surface", surfaces_.size() + 1);
-  Surface surface;
-  surface.line = line_.number;
-  surface.obstructs_only = obstructs_only;
-  read_ring(surface);
-  if (obstructs_only) {
-    read_obstruction(surface);
-  } else {
-    surface.base = take_reference("base");
-    surface.combined_with = take_reference("combination");
-    surface.material = take_emittance();
-    surface.name = text::take_word(rest_);
-  }
-  if (surface.name.empty() && !obstructs_only) surface.name = "surface_" + std::to_string(surfaces_.size() + 1);
-  surfaces_.push_back(std::move(surface));
-}
-
-// The fourth vertex of a triangle is 0.
-void View3dReader::read_ring(Surface& surface) {
-  for (int i = 0; i < 4; ++i) {
-    const std::string_view word = text::take_word(rest_);
-    const auto index = whole_number(word);
-    if (i == 3 && index == 0) return;
-    if (!index || *index < 1 || *index > std::int64_t{0xFFFFFFFF}) {
-      return fail(text::in_quotes(word) + " is not the number of a vertex",
-                  "a surface has three or four vertices, counted from 1", "write the fourth one of a triangle as 0");
-    }
-    surface.ring.push_back(static_cast<std::uint32_t>(*index - 1));
-  }
-}
-
-// View3D passes over all that follows the vertices: a name, or base, combination, emittance and name as of a surface.
-void View3dReader::read_obstruction(Surface& surface) {
-  surface.material = obstruction_material();
-  const std::vector<std::string_view> words = text::words(rest_);
-  const auto is_name = [](std::string_view word) { return text::parse_number(word).fault != text::NumberFault::kNone; };
-  const auto name = std::ranges::find_if(words, is_name);
-  surface.name = words.size() > 3 ? words[3] : name == words.end() ? kObstructions : *name;
-}
-
-MaterialId View3dReader::obstruction_material() {
-  const auto [place, is_new] = materials_.try_emplace(std::string(kObstruction));
-  if (is_new) place->second = input_.material({std::string(kObstruction), {1.0, 1.0, 1.0}, {}});
-  return place->second;
-}
-
-std::size_t View3dReader::take_reference(const char* what) {
-  const std::string_view word = text::take_word(rest_);
-  const auto number = whole_number(word);
-  if (number && *number >= 0 && static_cast<std::uint64_t>(*number) <= surfaces_.size())
-    return static_cast<std::size_t>(*number);
-  fail(std::string(what) + " " + text::in_quotes(word) + " is not the number of a surface before this one",
-       "surfaces are combined with, or lie in, surfaces that the file has already defined", "correct it, or write 0");
-  return 0;
-}
-
-// Kd = 1 - emittance, as a decimal before it is rounded. Without a number, the surface has neither emittance nor name.
-MaterialId View3dReader::take_emittance() {
-  const std::string_view word = text::take_word(rest_);
-  const text::ParsedNumber number = text::parse_number(word);
-  if (number.fault != text::NumberFault::kNone || number.value < 0.0 || number.value > 1.0) {
-    fail("emittance " + text::in_quotes(word) + " is not a number between 0 and 1",
-         "the reflectance of the surface is 1 - emittance", "correct it");
-    return input_.no_material();
-  }
-  const std::string emittance = fixed_decimal(number.value);
-  const auto [place, is_new] = materials_.try_emplace(emittance);
-  if (is_new) {
-    const double kd = text::parse_number(decimal_complement(emittance).value_or("1")).value;
-    place->second = input_.material({"emittance_" + emittance, {kd, kd, kd}, {}});
-  }
-  return place->second;
-}
-
-void View3dReader::add_surfaces() {
-  for (std::size_t place = 0; place < surfaces_.size(); ++place) {
-    line_.number = surfaces_[place].line;
-    for (const std::uint32_t vertex : surfaces_[place].ring) {
-      if (vertex >= vertices_.size())
-        fail("vertex " + std::to_string(vertex + 1ULL) + " does not exist",
-             "the file has " + text::counted(vertices_.size(), "vertex", "vertices"), "correct the number");
-    }
-    if (surfaces_[place].base > 0) cut_from_base(place);
-  }
-  for (std::size_t place = 0; place < surfaces_.size(); ++place) {
-    const Surface& surface = surfaces_[place];
-    line_.number = surface.line;
-    std::vector<std::vector<std::uint32_t>> rings = {surface.ring};
-    for (const std::size_t subsurface : surface.subsurfaces) rings.push_back(surfaces_[subsurface].ring);
-    input_.add_face(patch_of(place), surface.material, std::move(rings), at_line(surface.line));
-  }
-}
-
-void View3dReader::cut_from_base(std::size_t place) {
-  const std::size_t base = surfaces_[place].base - 1;
-  std::vector<Vec3> corners;
-  for (const std::size_t surface : {base, place}) {
-    for (const std::uint32_t vertex : surfaces_[surface].ring) {
-      if (vertex < vertices_.size()) corners.push_back(vertices_[vertex]);
-    }
-  }
-  if (surfaces_[base].obstructs_only) {
-    fail("the base of surface " + name_at(place) + " is an obstruction surface", "it has no area of its own to give",
-         "correct the base, or write 0");
-  } else if (!in_one_plane(corners)) {
-    fail("surface " + name_at(place) + " is not exactly in the plane of its base " + name_at(base),
-         "it cannot be cut out of it exactly", "move its vertices, or divide the base around it and write base 0");
-  } else {
-    surfaces_[base].subsurfaces.push_back(place);
-  }
-}
-
-PatchId View3dReader::patch_of(std::size_t place) {
-  const Surface& surface = surfaces_[place];
-  if (surface.obstructs_only) {
-    const auto known = obstructions_.find(surface.name);
-    if (known != obstructions_.end()) return known->second;
-    return obstructions_[surface.name] = input_.patch(distinct_name(place));
-  }
-  if (surface.combined_with == 0) return patches_[place] = input_.patch(distinct_name(place));
-  const auto other = patches_.find(surface.combined_with - 1);
-  if (other != patches_.end()) return other->second;
-  fail("surface " + name_at(place) + " is combined with surface " + name_at(surface.combined_with - 1),
-       "that one is itself combined, or an obstruction", "name the first surface of the combination");
-  return input_.patch(surface.name);
-}
-
-// View3D tells surfaces apart by their numbers, so names may be repeated.
-std::string View3dReader::distinct_name(std::size_t place) {
-  std::string name = surfaces_[place].name;
-  if (names_.insert(name).second) return name;
-  name += "#" + std::to_string(place + 1);
-  while (!names_.insert(name).second) name += '_';
-  input_.warn(at_line(surfaces_[place].line), "surface " + name_at(place) + " has the name of another",
-              "names select patches", "it is called " + text::in_quotes(name));
-  return name;
-}
-
-// Faces are in the order of surfaces. A base that --skip-bad-faces has left out has nothing to lose.
-void View3dReader::check_subsurfaces(const Scene& scene) const {
-  text::ProblemList problems;
-  for (std::size_t base = 0; base < surfaces_.size(); ++base) {
-    const FaceId base_face{static_cast<std::uint32_t>(base)};
-    if (surfaces_[base].subsurfaces.empty() || scene.face(base_face).shape == FaceShape::kSkipped) continue;
-    std::vector<FaceId> faces;
-    bool same_fronts = true;
-    for (const std::size_t place : surfaces_[base].subsurfaces) {
-      faces.push_back(FaceId{static_cast<std::uint32_t>(place)});
-      if (same_front(scene, base_face, faces.back())) continue;
-      same_fronts = false;
-      problems.add({input_.file(), surfaces_[place].line,
-                    "surface " + name_at(place) + " faces away from its base " + name_at(base),
-                    "it would be a part of the other side", "reverse the order of its vertices"});
-    }
-    if (same_fronts && !are_parts(scene, base_face, faces)) {
-      problems.add({input_.file(), surfaces_[base].line,
-                    "subsurfaces of surface " + name_at(base) + " overlap, or reach beyond it",
-                    "each point belongs to one surface", "correct them"});
-    }
-  }
-  problems.throw_if_any();
-}
-
 }  // namespace
 
 Scene read_view3d(std::string_view text, const std::filesystem::path& path, const SceneOptions& options) {
@@ -392,9 +377,7 @@ Scene read_view3d(std::string_view text, const std::filesystem::path& path, cons
   return View3dReader(text, input).run();
 }
 
-// --- Writer ---
-
-// View3D (.vs3). Faces after the first one of a patch are combined with it.
+// --- Writer: faces after the first one of a patch are combined with it ---
 
 namespace {
 
@@ -409,19 +392,15 @@ std::string emittance(const Rgb& kd) {
 }
 
 void tell_losses(const Scene& scene, Losses& losses) {
-  const auto count = [&](const auto& is_lost) {
-    return static_cast<std::size_t>(std::count_if(scene.materials().begin(), scene.materials().end(), is_lost));
+  const auto tell = [&](const auto& is_lost, const char* colour, const char* what, const char* why,
+                        const char* advice) {
+    if (const auto count = std::ranges::count_if(scene.materials(), is_lost); count > 0)
+      losses.add(colour + text::counted(static_cast<std::uint64_t>(count), "material") + what, why, advice);
   };
-  const std::size_t emitting = count([](const Material& m) { return m.emits(); });
-  const std::size_t coloured = count([](const Material& m) { return !is_grey(m.reflectance); });
-  if (emitting > 0) {
-    losses.add("Ke of " + text::counted(emitting, "material") + " is lost", "View3D surfaces have no radiosity",
-               "write OBJ to keep it");
-  }
-  if (coloured > 0) {
-    losses.add("Kd of " + text::counted(coloured, "material") + " becomes one number within 0 and 1",
-               "View3D surfaces have one emittance, 1 - Kd", "write OBJ to keep the colours");
-  }
+  tell([](const Material& m) { return m.emits(); }, "Ke of ", " is lost", "View3D surfaces have no radiosity",
+       "write OBJ to keep it");
+  tell([](const Material& m) { return !is_grey(m.reflectance); }, "Kd of ", " becomes one number within 0 and 1",
+       "View3D surfaces have one emittance, 1 - Kd", "write OBJ to keep the colours");
 }
 
 class View3dWriter {
@@ -434,11 +413,8 @@ class View3dWriter {
 
   std::string run() {
     out_ = "T written by " + text::program_version() + "\nC\nF 3\n";
-    for (std::size_t i = 0; i < scene_.vertices().size(); ++i) {
-      out_ += "V " + std::to_string(i + 1);
-      append_point(out_, scene_.vertices()[i]);
-      out_ += '\n';
-    }
+    for (std::size_t i = 0; i < scene_.vertices().size(); ++i)
+      append_point(out_, "V " + std::to_string(i + 1) + ' ', scene_.vertices()[i]);
     for (const OutputFace& face : faces_) {
       if (!obstructs_only(face)) append_surface(face);
     }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "exactff/scene.h"
@@ -29,10 +30,10 @@ class Losses {
   std::vector<Problem> problems_;
 };
 
-// Appends the shortest decimal that reads back to the same double.
-void append_number(std::string& out, double value);
-// "x y z", with a blank before each.
-void append_point(std::string& out, const Vec3& point);
+// The shortest decimals that read back to the same doubles: "START x y z", and a line end.
+void append_point(std::string& out, std::string_view start, const Vec3& point);
+// "COMMENT unit mm", which readers of the format find; empty if the scene states no unit.
+[[nodiscard]] std::string unit_line(const Scene& scene, const std::string& comment);
 
 [[nodiscard]] bool needs_mtl(const Scene& scene);
 // `mtl` is the name of the material file; empty if there is none.
@@ -60,6 +61,9 @@ struct OutputFace {
   FaceId face{};
   std::vector<std::uint32_t> corners;
 };
+
+// Their number, and the numbers of the vertices, counted from 0.
+[[nodiscard]] std::string corner_words(const OutputFace& face);
 
 // In the order of the faces. A face that does not fit is cut at its own vertices, exactly. Faces that cannot be used
 // are left out. Faces without area are kept as they are, if the format can hold them. `format` is its name in messages.

@@ -16,6 +16,7 @@
 #include "receivers/own_pieces.h"
 #include "receivers/region_shape.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff {
 namespace {
@@ -162,15 +163,13 @@ class RegionGrid {
 void check_grid_size(GridSize size, std::size_t regions) {
   const std::string cells = "a grid of " + std::to_string(size.u) + "x" + std::to_string(size.v) + " cells";
   if (size.u < 1 || size.v < 1) {
-    throw InputError({.what = cells,
-                      .why = "a grid has at least one column and one row",
-                      .suggestion = "write, for example, 32x32"});
+    text::refuse(cells, "a grid has at least one column and one row", "write, for example, 32x32");
   }
   const std::uint64_t each = static_cast<std::uint64_t>(size.u) * static_cast<std::uint64_t>(size.v);
   if (each * (regions > 0 ? 1 : 0) <= kMostReceivers / std::max<std::uint64_t>(regions, 1)) return;
-  throw InputError({.what = cells + " on " + text::counted(regions, "region"),
-                    .why = "the limit is " + std::to_string(kMostReceivers) + " cells in total",
-                    .suggestion = "use fewer cells or a smaller patch"});
+  text::refuse(cells + " on " + text::counted(regions, "region"),
+               "the limit is " + std::to_string(kMostReceivers) + " cells in total",
+               "use fewer cells or a smaller patch");
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // Faces that a point given by coordinates lies on or near. All distances are estimates, in coordinates multiplied by a
 // power of two that brings the largest of the scene near 1; the side of a face is exact.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>

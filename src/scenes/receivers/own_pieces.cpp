@@ -13,6 +13,7 @@
 #include "scene/scene.h"
 #include "text/names.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "text/text_lines.h"
 
 namespace exactff {
@@ -187,9 +188,9 @@ FaceId one_face(const Scene& scene, const std::string& name) {
   if (selection.face) return *selection.face;
   const std::size_t faces = scene.patch(selection.patch).faces.size();
   if (faces == 1) return scene.patch(selection.patch).faces.front();
-  throw InputError({.what = text::in_quotes(name, text::kShownName) + " has " + std::to_string(faces) + " faces",
-                    .why = "a patch may be bent, so the name does not say where the receiver lies",
-                    .suggestion = "write " + text::in_quotes(name + ":k", text::kShownName) + " for its k-th face"});
+  text::refuse(text::in_quotes(name, text::kShownName) + " has " + std::to_string(faces) + " faces",
+               "a patch may be bent, so the name does not say where the receiver lies",
+               "write " + text::in_quotes(name + ":k", text::kShownName) + " for its k-th face");
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "kernel/poll.h"
 #include "receivers/own_pieces.h"
 #include "scene/face_points.h"
+#include "text/refuse.h"
 
 namespace exactff {
 namespace {
@@ -161,9 +162,9 @@ Vec3 point_in(const Scene& scene, const Triangle& triangle, RandomNumbers& numbe
 
 void check_sample_count(std::uint64_t count) {
   if (count >= 1 && count <= kMostReceivers) return;
-  throw InputError({.what = std::to_string(count) + " samples",
-                    .why = "the number of receivers must be between 1 and " + std::to_string(kMostReceivers),
-                    .suggestion = count < 1 ? "give at least 1" : "use fewer samples"});
+  text::refuse(std::to_string(count) + " samples",
+               "the number of receivers must be between 1 and " + std::to_string(kMostReceivers),
+               count < 1 ? "give at least 1" : "use fewer samples");
 }
 
 }  // namespace
@@ -175,9 +176,7 @@ std::vector<Receiver> sample_receivers(const Scene& scene, std::span<const FaceI
   const std::vector<Triangle> triangles = triangles_of(scene, on);
   const std::vector<Integer> sums = cumulated_shares(scene, triangles);
   if (sums.empty()) {
-    throw InputError({.what = "no face to sample has area",
-                      .why = "samples are distributed by area",
-                      .suggestion = "choose another patch"});
+    text::refuse("no face to sample has area", "samples are distributed by area", "choose another patch");
   }
   RandomNumbers numbers(seed);
   std::vector<Receiver> receivers;

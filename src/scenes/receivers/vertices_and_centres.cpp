@@ -18,6 +18,7 @@
 #include "receivers/own_pieces.h"
 #include "receivers/region_shape.h"
 #include "scene/scene.h"
+#include "text/refuse.h"
 
 namespace exactff {
 namespace {
@@ -35,9 +36,8 @@ void check_corner_count(const Scene& scene, std::span<const FaceId> on) {
     for (const auto& ring : scene.face(face).rings) corners += ring.size();
   }
   if (corners <= kMostReceivers) return;
-  throw InputError({.what = std::to_string(corners) + " corners of faces",
-                    .why = "the limit is " + std::to_string(kMostReceivers) + " receivers in total",
-                    .suggestion = "use a smaller patch"});
+  text::refuse(std::to_string(corners) + " corners of faces",
+               "the limit is " + std::to_string(kMostReceivers) + " receivers in total", "use a smaller patch");
 }
 
 void append_corners(const Scene& scene, FaceId id, std::vector<Receiver>& receivers) {
@@ -166,9 +166,8 @@ class RegionCentre {
 
 void check_region_count(std::size_t regions) {
   if (regions <= kMostReceivers) return;
-  throw InputError({.what = std::to_string(regions) + " faces",
-                    .why = "the limit is " + std::to_string(kMostReceivers) + " receivers in total",
-                    .suggestion = "use a smaller patch"});
+  text::refuse(std::to_string(regions) + " faces",
+               "the limit is " + std::to_string(kMostReceivers) + " receivers in total", "use a smaller patch");
 }
 
 }  // namespace

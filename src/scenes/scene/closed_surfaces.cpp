@@ -69,14 +69,130 @@ class Finder {
       from = to;
     }
   }
-  void leave_out_pieces();
-  void sort_edges();
-  void join_at_edges();
-  void join(std::uint32_t low, std::span<const DirectedEdge> edge);
-  void join_at_junctions();
-  void find_rims();
-  [[nodiscard]] bool find_plane(ClosedSurface::Rim& rim) const;
-  void turn_to_surfaces();
+
+  void leave_out_pieces() {
+    std::vector<std::uint32_t> uses(places_.size(), 0);
+    const auto for_each_place = [&](const auto& take) {
+      for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
+        if (scene_.pieces()[piece].transparent) continue;
+        for (const std::uint32_t corner : scene_.corners(scene_.pieces()[piece])) take(piece, places_[corner]);
+      }
+    };
+    for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
+      if (scene_.pieces()[piece].transparent) open_[piece] = 1;
+    }
+    for_each_place([&](std::uint32_t, std::uint32_t place) { ++uses[place]; });
+    for_each_place([&](std::uint32_t piece, std::uint32_t place) {
+      if (uses[place] < 2) open_[piece] = 1;
+    });
+  }
+
+  void sort_edges() {
+    begin_.assign(places_.size() + 1, 0);
+    const auto for_each = [&](const auto& take) {
+      for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
+        if (open_[piece] == 0) for_each_edge(piece, take);
+      }
+    };
+    for_each([&](std::uint32_t low, const DirectedEdge&) { ++begin_[low + 1]; });
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    edges_.resize(begin_.back());
+    std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+    for_each([&](std::uint32_t low, const DirectedEdge& edge) { edges_[next[low]++] = edge; });
+  }
+
+  void join_at_edges() {
+    for (std::size_t place = 0; place + 1 < begin_.size(); ++place) {
+      const auto first = edges_.begin() + begin_[place], last = edges_.begin() + begin_[place + 1];
+      std::sort(first, last, [](const DirectedEdge& a, const DirectedEdge& b) { return a.high < b.high; });
+      for (auto at = first; at != last;) {
+        const auto end = std::find_if(at, last, [&](const DirectedEdge& e) { return e.high != at->high; });
+        join(static_cast<std::uint32_t>(place), {at, end});
+        at = end;
+      }
+    }
+  }
+
+  void join(std::uint32_t low, std::span<const DirectedEdge> edge) {
+    int balance = 0;
+    for (const DirectedEdge& e : edge) {
+      balance += e.upwards ? 1 : -1;
+      surface_of_.join(e.piece, edge.front().piece);
+    }
+    if (balance == 0) return;
+    if (!edges_are_cut_) {
+      open_[edge.front().piece] = 1;
+      return;
+    }
+    for (const DirectedEdge& e : edge) uncancelled_.push_back({low, e.high, e.piece, e.upwards});
+  }
+
+  void join_at_junctions() {
+    cut_at_junctions(uncancelled_, scene_.vertices());
+    exactff::for_each_edge(uncancelled_, [&](auto first, auto last) {
+      for (auto use = first; use != last; ++use) surface_of_.join(use->piece, first->piece);
+      const std::ptrdiff_t balance = balance_of(first, last);
+      for (std::ptrdiff_t i = 0; i < std::abs(balance); ++i) {
+        of_holes_.push_back({first->low, first->high, first->piece, balance > 0});
+      }
+    });
+  }
+
+  void find_rims() {
+    for (const EdgeOfPiece& edge : of_holes_) {
+      const std::uint32_t whole = root(edge.piece);
+      if (open_[whole] != 0) continue;
+      rims_[whole].edges.emplace_back(edge.upwards ? edge.low : edge.high, edge.upwards ? edge.high : edge.low);
+    }
+    for (auto rim = rims_.begin(); rim != rims_.end();) {
+      const bool has_plane = find_plane(rim->second);
+      if (!has_plane) open_[rim->first] = 1;
+      rim = has_plane ? std::next(rim) : rims_.erase(rim);
+    }
+    turn_to_surfaces();
+  }
+
+  // False if the edges do not lie in one plane, or on one line.
+  [[nodiscard]] bool find_plane(ClosedSurface::Rim& rim) const {
+    const auto vertices = scene_.vertices();
+    const auto& ends = rim.edges.front();
+    const Vec3 &a = vertices[ends.first], &b = vertices[ends.second];
+    const auto third = std::ranges::find_if(rim.edges, [&](const auto& edge) {
+      return edge.first != ends.first && edge.first != ends.second && !are_straight(a, b, vertices[edge.first]);
+    });
+    if (third == rim.edges.end()) return false;
+    rim.plane = {a, b, vertices[third->first]};
+    const kernel::PlaneThrough plane(rim.plane[0], rim.plane[1], rim.plane[2]);
+    return std::ranges::all_of(rim.edges, [&](const auto& edge) { return plane.side_of(vertices[edge.first]) == 0; });
+  }
+
+  // Of surfaces that lie on both sides of the plane, or in it, the edges stay marked.
+  void turn_to_surfaces() {
+    struct Side {
+      kernel::PlaneThrough plane;
+      bool before = false, behind = false;
+    };
+    std::map<std::uint32_t, Side> sides;
+    for (const auto& [whole, rim] : rims_) sides.try_emplace(whole, Side{{rim.plane[0], rim.plane[1], rim.plane[2]}});
+    if (sides.empty()) return;
+    for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
+      const auto found = sides.find(root(piece));
+      if (found == sides.end()) continue;
+      for (const std::uint32_t corner : scene_.corners(scene_.pieces()[piece])) {
+        const int side = found->second.plane.side_of(scene_.vertices()[corner]);
+        found->second.before = found->second.before || side > 0;
+        found->second.behind = found->second.behind || side < 0;
+      }
+    }
+    for (const auto& [whole, side] : sides) {
+      if (side.before == side.behind) {
+        open_[whole] = 1;
+        rims_.erase(whole);
+      } else if (side.behind) {
+        std::swap(rims_[whole].plane[0], rims_[whole].plane[1]);
+      }
+    }
+  }
 
   const Scene& scene_;
   const std::span<const std::uint32_t> places_;
@@ -89,130 +205,6 @@ class Finder {
   std::vector<EdgeOfPiece> of_holes_;                 // of these, cut, what does not cancel
   std::map<std::uint32_t, ClosedSurface::Rim> rims_;  // by root
 };
-
-void Finder::leave_out_pieces() {
-  std::vector<std::uint32_t> uses(places_.size(), 0);
-  const auto for_each_place = [&](const auto& take) {
-    for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
-      if (scene_.pieces()[piece].transparent) continue;
-      for (const std::uint32_t corner : scene_.corners(scene_.pieces()[piece])) take(piece, places_[corner]);
-    }
-  };
-  for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
-    if (scene_.pieces()[piece].transparent) open_[piece] = 1;
-  }
-  for_each_place([&](std::uint32_t, std::uint32_t place) { ++uses[place]; });
-  for_each_place([&](std::uint32_t piece, std::uint32_t place) {
-    if (uses[place] < 2) open_[piece] = 1;
-  });
-}
-
-void Finder::sort_edges() {
-  begin_.assign(places_.size() + 1, 0);
-  const auto for_each = [&](const auto& take) {
-    for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
-      if (open_[piece] == 0) for_each_edge(piece, take);
-    }
-  };
-  for_each([&](std::uint32_t low, const DirectedEdge&) { ++begin_[low + 1]; });
-  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-  edges_.resize(begin_.back());
-  std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-  for_each([&](std::uint32_t low, const DirectedEdge& edge) { edges_[next[low]++] = edge; });
-}
-
-void Finder::join_at_edges() {
-  for (std::size_t place = 0; place + 1 < begin_.size(); ++place) {
-    const auto first = edges_.begin() + begin_[place], last = edges_.begin() + begin_[place + 1];
-    std::sort(first, last, [](const DirectedEdge& a, const DirectedEdge& b) { return a.high < b.high; });
-    for (auto at = first; at != last;) {
-      const auto end = std::find_if(at, last, [&](const DirectedEdge& e) { return e.high != at->high; });
-      join(static_cast<std::uint32_t>(place), {at, end});
-      at = end;
-    }
-  }
-}
-
-void Finder::join(std::uint32_t low, std::span<const DirectedEdge> edge) {
-  int balance = 0;
-  for (const DirectedEdge& e : edge) {
-    balance += e.upwards ? 1 : -1;
-    surface_of_.join(e.piece, edge.front().piece);
-  }
-  if (balance == 0) return;
-  if (!edges_are_cut_) {
-    open_[edge.front().piece] = 1;
-    return;
-  }
-  for (const DirectedEdge& e : edge) uncancelled_.push_back({low, e.high, e.piece, e.upwards});
-}
-
-void Finder::join_at_junctions() {
-  cut_at_junctions(uncancelled_, scene_.vertices());
-  exactff::for_each_edge(uncancelled_, [&](auto first, auto last) {
-    for (auto use = first; use != last; ++use) surface_of_.join(use->piece, first->piece);
-    const std::ptrdiff_t balance = balance_of(first, last);
-    for (std::ptrdiff_t i = 0; i < std::abs(balance); ++i) {
-      of_holes_.push_back({first->low, first->high, first->piece, balance > 0});
-    }
-  });
-}
-
-void Finder::find_rims() {
-  for (const EdgeOfPiece& edge : of_holes_) {
-    const std::uint32_t whole = root(edge.piece);
-    if (open_[whole] != 0) continue;
-    rims_[whole].edges.emplace_back(edge.upwards ? edge.low : edge.high, edge.upwards ? edge.high : edge.low);
-  }
-  for (auto rim = rims_.begin(); rim != rims_.end();) {
-    const bool has_plane = find_plane(rim->second);
-    if (!has_plane) open_[rim->first] = 1;
-    rim = has_plane ? std::next(rim) : rims_.erase(rim);
-  }
-  turn_to_surfaces();
-}
-
-// False if the edges do not lie in one plane, or on one line.
-bool Finder::find_plane(ClosedSurface::Rim& rim) const {
-  const auto vertices = scene_.vertices();
-  const auto& ends = rim.edges.front();
-  const Vec3 &a = vertices[ends.first], &b = vertices[ends.second];
-  const auto third = std::ranges::find_if(rim.edges, [&](const auto& edge) {
-    return edge.first != ends.first && edge.first != ends.second && !are_straight(a, b, vertices[edge.first]);
-  });
-  if (third == rim.edges.end()) return false;
-  rim.plane = {a, b, vertices[third->first]};
-  const kernel::PlaneThrough plane(rim.plane[0], rim.plane[1], rim.plane[2]);
-  return std::ranges::all_of(rim.edges, [&](const auto& edge) { return plane.side_of(vertices[edge.first]) == 0; });
-}
-
-// Of surfaces that lie on both sides of the plane, or in it, the edges stay marked.
-void Finder::turn_to_surfaces() {
-  struct Side {
-    kernel::PlaneThrough plane;
-    bool before = false, behind = false;
-  };
-  std::map<std::uint32_t, Side> sides;
-  for (const auto& [whole, rim] : rims_) sides.try_emplace(whole, Side{{rim.plane[0], rim.plane[1], rim.plane[2]}});
-  if (sides.empty()) return;
-  for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
-    const auto found = sides.find(root(piece));
-    if (found == sides.end()) continue;
-    for (const std::uint32_t corner : scene_.corners(scene_.pieces()[piece])) {
-      const int side = found->second.plane.side_of(scene_.vertices()[corner]);
-      found->second.before = found->second.before || side > 0;
-      found->second.behind = found->second.behind || side < 0;
-    }
-  }
-  for (const auto& [whole, side] : sides) {
-    if (side.before == side.behind) {
-      open_[whole] = 1;
-      rims_.erase(whole);
-    } else if (side.behind) {
-      std::swap(rims_[whole].plane[0], rims_[whole].plane[1]);
-    }
-  }
-}
 
 // Six times the volume between the piece and a point.
 double volume(const Scene& scene, const Piece& piece, const Vec3& apex) {

@@ -1,7 +1,6 @@
 #include "scene/contacts.h"
 
 #include <algorithm>
-#include <array>
 #include <boost/container/small_vector.hpp>
 #include <set>
 

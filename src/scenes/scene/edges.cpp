@@ -73,6 +73,21 @@ NormalBounds normal_bounds(const Vec3& p, const Vec3& q, const Vec3& r) {
   return bounds;
 }
 
+void include(Box& box, const Box& other) {
+  box.include(other.low);
+  box.include(other.high);
+}
+
+// NaN if either is.
+void include(NormalBounds& bounds, const NormalBounds& other) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float least = other.least[i], largest = other.largest[i];
+    if (!(bounds.least[i] <= least)) bounds.least[i] = bounds.least[i] == bounds.least[i] ? least : kNoNumber;
+    if (!(bounds.largest[i] >= largest))
+      bounds.largest[i] = bounds.largest[i] == bounds.largest[i] ? largest : kNoNumber;
+  }
+}
+
 }  // namespace
 
 // With u = 2^-53: each difference is rounded once, each product once more, three sums err by at most 3u of the sum m of
@@ -112,14 +127,165 @@ class SceneEdgesBuilder {
   }
 
  private:
-  void sort_uses();
-  void turn_pieces_over();
-  void find_bounds();
-  void add_node(std::uint32_t first, std::uint32_t last);
-  void number_in_order();
-  [[nodiscard]] Box box_of_edge(std::uint32_t edge) const;
-  [[nodiscard]] NormalBounds normals_of_edge(std::uint32_t edge) const;
-  [[nodiscard]] bool is_balanced(std::uint32_t edge) const;
+  void sort_uses() {
+    struct Use {
+      std::uint32_t high, piece, corner;
+      bool upwards;
+    };
+    const auto place = places(scene_);
+    std::vector<std::uint32_t> begin(vertices_.size() + 1, 0);
+    const auto for_each_use = [&](const auto& take) {
+      for (std::uint32_t p = 0; p < pieces_.size(); ++p) {
+        if (pieces_[p].transparent) continue;
+        const auto corners = scene_.corners(pieces_[p]);
+        for (std::uint32_t c = 0; c < corners.size(); ++c) {
+          const std::uint32_t from = place[corners[c]], to = place[corners[c + 1 == corners.size() ? 0 : c + 1]];
+          take(std::min(from, to), Use{std::max(from, to), p, pieces_[p].first_corner + c, from < to});
+        }
+      }
+    };
+    std::uint32_t corner_count = 0;
+    for (const Piece& piece : pieces_) corner_count = std::max(corner_count, piece.first_corner + piece.corner_count);
+    for_each_use([&](std::uint32_t low, const Use&) { ++begin[low + 1]; });
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<Use> uses(begin.back());
+    {
+      std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+      for_each_use([&](std::uint32_t low, const Use& use) { uses[next[low]++] = use; });
+    }
+    result_.edge_of_corner_.resize(corner_count);
+    result_.uses_.reserve(uses.size());
+    for (std::uint32_t low = 0; low < vertices_.size(); ++low) {
+      const auto first = uses.begin() + begin[low], last = uses.begin() + begin[low + 1];
+      std::stable_sort(first, last, [](const Use& a, const Use& b) { return a.high < b.high; });
+      for (auto use = first; use != last; ++use) {
+        if (use == first || use->high != (use - 1)->high) {
+          result_.edges_.push_back({low, use->high, static_cast<std::uint32_t>(result_.uses_.size())});
+        }
+        result_.edge_of_corner_[use->corner] = static_cast<std::uint32_t>(result_.edges_.size() - 1);
+        result_.uses_.emplace_back(use->piece, use->upwards);
+      }
+    }
+    if (!result_.edges_.empty()) result_.edges_.push_back({0, 0, static_cast<std::uint32_t>(result_.uses_.size())});
+    result_.edges_.shrink_to_fit();
+  }
+
+  void turn_pieces_over() {
+    turned_.assign(pieces_.size(), 0);
+    std::vector<std::uint8_t> reached(pieces_.size(), 0);
+    std::vector<std::uint32_t> waiting;
+    for (std::uint32_t seed = 0; seed < pieces_.size(); ++seed) {
+      if (reached[seed] != 0 || pieces_[seed].transparent) continue;
+      reached[seed] = 1;
+      waiting.assign(1, seed);
+      while (!waiting.empty()) {
+        const std::uint32_t piece = waiting.back();
+        waiting.pop_back();
+        for (const std::uint32_t edge : result_.of_piece(pieces_[piece])) {
+          const auto uses = result_.uses(edge);
+          if (uses.size() != 2) continue;
+          const EdgeUse& other = uses[uses[0].piece() == piece ? 1 : 0];
+          if (reached[other.piece()] != 0) continue;
+          reached[other.piece()] = 1;
+          turned_[other.piece()] = turned_[piece] ^ (uses[0].upwards() == uses[1].upwards() ? 1U : 0U);
+          waiting.push_back(other.piece());
+        }
+      }
+    }
+  }
+
+  void find_bounds() {
+    normals_.resize(pieces_.size());
+    for (std::uint32_t p = 0; p < pieces_.size(); ++p) {
+      const auto& frame = pieces_[p].frame;
+      const NormalBounds n = normal_bounds(vertices_[frame[0]], vertices_[frame[1]], vertices_[frame[2]]);
+      normals_[p] = turned_[p] != 0 ? turned_over(n) : n;
+    }
+  }
+
+  void add_node(std::uint32_t first, std::uint32_t last) {
+    const auto index = static_cast<std::uint32_t>(result_.nodes_.size());
+    result_.nodes_.emplace_back();
+    Box box;
+    NormalBounds normals;
+    if (last - first <= kLeafSize) {
+      box = box_of_edge(order_[first].edge);
+      normals = normals_of_edge(order_[first].edge);
+      for (std::uint32_t i = first + 1; i < last; ++i) {
+        include(box, box_of_edge(order_[i].edge));
+        include(normals, normals_of_edge(order_[i].edge));
+      }
+    } else {
+      Box middles{order_[first].middle, order_[first].middle};
+      for (std::uint32_t i = first + 1; i < last; ++i) middles.include(order_[i].middle);
+      const int axis = longest_axis(middles);
+      const std::uint32_t half = first + (last - first) / 2;
+      std::nth_element(order_.begin() + first, order_.begin() + half, order_.begin() + last,
+                       [&](const Placed& a, const Placed& b) {
+                         const double u = kernel::coordinate(a.middle, axis), v = kernel::coordinate(b.middle, axis);
+                         return u != v ? u < v : a.edge < b.edge;
+                       });
+      add_node(first, half);
+      const auto right = static_cast<std::uint32_t>(result_.nodes_.size());
+      add_node(half, last);
+      SceneEdges::Node &node = result_.nodes_[index], &l = result_.nodes_[index + 1], &r = result_.nodes_[right];
+      node.right = right;
+      box = l.box;
+      include(box, r.box);
+      normals = {l.least_normal, l.largest_normal};
+      include(normals, {r.least_normal, r.largest_normal});
+    }
+    SceneEdges::Node& node = result_.nodes_[index];
+    node.box = box;
+    node.least_normal = normals.least;
+    node.largest_normal = normals.largest;
+    node.first = first;
+    node.last = last;
+  }
+
+  // Edges that are near each other get numbers that are near each other, and so do their uses.
+  void number_in_order() {
+    std::vector<SceneEdge> edges;
+    std::vector<EdgeUse> uses;
+    std::vector<std::uint32_t> number(order_.size());
+    edges.reserve(result_.edges_.size());
+    uses.reserve(result_.uses_.size());
+    for (const Placed& placed : order_) {
+      const std::uint32_t edge = placed.edge;
+      number[edge] = static_cast<std::uint32_t>(edges.size());
+      edges.push_back({result_.edge(edge).a, result_.edge(edge).b, static_cast<std::uint32_t>(uses.size())});
+      const auto own = result_.uses(edge);
+      uses.insert(uses.end(), own.begin(), own.end());
+    }
+    edges.push_back({0, 0, static_cast<std::uint32_t>(uses.size())});
+    for (std::uint32_t& edge : result_.edge_of_corner_) edge = number[edge];  // of transparent pieces it is unused
+    result_.edges_ = std::move(edges);
+    result_.uses_ = std::move(uses);
+  }
+
+  [[nodiscard]] Box box_of_edge(std::uint32_t edge) const {
+    const Vec3& a = vertices_[result_.edge(edge).a];
+    Box box{a, a};
+    for (const EdgeUse& use : result_.uses(edge)) {
+      for (const std::uint32_t corner : scene_.corners(pieces_[use.piece()])) box.include(vertices_[corner]);
+    }
+    return box;
+  }
+
+  [[nodiscard]] NormalBounds normals_of_edge(std::uint32_t edge) const {
+    if (!is_balanced(edge)) return {};
+    const auto uses = result_.uses(edge);
+    NormalBounds bounds = normals_[uses.front().piece()];
+    for (const EdgeUse& use : uses.subspan(1)) include(bounds, normals_[use.piece()]);
+    return bounds;
+  }
+
+  [[nodiscard]] bool is_balanced(std::uint32_t edge) const {
+    int balance = 0;
+    for (const EdgeUse& use : result_.uses(edge)) balance += use.upwards() != (turned_[use.piece()] != 0) ? 1 : -1;
+    return balance == 0;
+  }
+
   // The middle of an edge. Only the shape of the tree depends on it.
   [[nodiscard]] Vec3 middle(std::uint32_t edge) const {
     const Vec3 &a = vertices_[result_.edge(edge).a], &b = vertices_[result_.edge(edge).b];
@@ -139,184 +305,6 @@ class SceneEdgesBuilder {
   std::vector<NormalBounds> normals_;  // by piece, after turning
   std::vector<Placed> order_;          // edges, in the order of the leaves
 };
-
-void SceneEdgesBuilder::sort_uses() {
-  struct Use {
-    std::uint32_t high, piece, corner;
-    bool upwards;
-  };
-  const auto place = places(scene_);
-  std::vector<std::uint32_t> begin(vertices_.size() + 1, 0);
-  const auto for_each_use = [&](const auto& take) {
-    for (std::uint32_t p = 0; p < pieces_.size(); ++p) {
-      if (pieces_[p].transparent) continue;
-      const auto corners = scene_.corners(pieces_[p]);
-      for (std::uint32_t c = 0; c < corners.size(); ++c) {
-        const std::uint32_t from = place[corners[c]], to = place[corners[c + 1 == corners.size() ? 0 : c + 1]];
-        take(std::min(from, to), Use{std::max(from, to), p, pieces_[p].first_corner + c, from < to});
-      }
-    }
-  };
-  std::uint32_t corner_count = 0;
-  for (const Piece& piece : pieces_) corner_count = std::max(corner_count, piece.first_corner + piece.corner_count);
-  for_each_use([&](std::uint32_t low, const Use&) { ++begin[low + 1]; });
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<Use> uses(begin.back());
-  {
-    std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-    for_each_use([&](std::uint32_t low, const Use& use) { uses[next[low]++] = use; });
-  }
-  result_.edge_of_corner_.resize(corner_count);
-  result_.uses_.reserve(uses.size());
-  for (std::uint32_t low = 0; low < vertices_.size(); ++low) {
-    const auto first = uses.begin() + begin[low], last = uses.begin() + begin[low + 1];
-    std::stable_sort(first, last, [](const Use& a, const Use& b) { return a.high < b.high; });
-    for (auto use = first; use != last; ++use) {
-      if (use == first || use->high != (use - 1)->high) {
-        result_.edges_.push_back({low, use->high, static_cast<std::uint32_t>(result_.uses_.size())});
-      }
-      result_.edge_of_corner_[use->corner] = static_cast<std::uint32_t>(result_.edges_.size() - 1);
-      result_.uses_.emplace_back(use->piece, use->upwards);
-    }
-  }
-  if (!result_.edges_.empty()) result_.edges_.push_back({0, 0, static_cast<std::uint32_t>(result_.uses_.size())});
-  result_.edges_.shrink_to_fit();
-}
-
-void SceneEdgesBuilder::turn_pieces_over() {
-  turned_.assign(pieces_.size(), 0);
-  std::vector<std::uint8_t> reached(pieces_.size(), 0);
-  std::vector<std::uint32_t> waiting;
-  for (std::uint32_t seed = 0; seed < pieces_.size(); ++seed) {
-    if (reached[seed] != 0 || pieces_[seed].transparent) continue;
-    reached[seed] = 1;
-    waiting.assign(1, seed);
-    while (!waiting.empty()) {
-      const std::uint32_t piece = waiting.back();
-      waiting.pop_back();
-      for (const std::uint32_t edge : result_.of_piece(pieces_[piece])) {
-        const auto uses = result_.uses(edge);
-        if (uses.size() != 2) continue;
-        const EdgeUse& other = uses[uses[0].piece() == piece ? 1 : 0];
-        if (reached[other.piece()] != 0) continue;
-        reached[other.piece()] = 1;
-        turned_[other.piece()] = turned_[piece] ^ (uses[0].upwards() == uses[1].upwards() ? 1U : 0U);
-        waiting.push_back(other.piece());
-      }
-    }
-  }
-}
-
-bool SceneEdgesBuilder::is_balanced(std::uint32_t edge) const {
-  int balance = 0;
-  for (const EdgeUse& use : result_.uses(edge)) balance += use.upwards() != (turned_[use.piece()] != 0) ? 1 : -1;
-  return balance == 0;
-}
-
-void SceneEdgesBuilder::find_bounds() {
-  normals_.resize(pieces_.size());
-  for (std::uint32_t p = 0; p < pieces_.size(); ++p) {
-    const auto& frame = pieces_[p].frame;
-    const NormalBounds n = normal_bounds(vertices_[frame[0]], vertices_[frame[1]], vertices_[frame[2]]);
-    normals_[p] = turned_[p] != 0 ? turned_over(n) : n;
-  }
-}
-
-namespace {
-
-void include(Box& box, const Box& other) {
-  box.include(other.low);
-  box.include(other.high);
-}
-
-// NaN if either is.
-void include(NormalBounds& bounds, const NormalBounds& other) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const float least = other.least[i], largest = other.largest[i];
-    if (!(bounds.least[i] <= least)) bounds.least[i] = bounds.least[i] == bounds.least[i] ? least : kNoNumber;
-    if (!(bounds.largest[i] >= largest))
-      bounds.largest[i] = bounds.largest[i] == bounds.largest[i] ? largest : kNoNumber;
-  }
-}
-
-}  // namespace
-
-Box SceneEdgesBuilder::box_of_edge(std::uint32_t edge) const {
-  const Vec3& a = vertices_[result_.edge(edge).a];
-  Box box{a, a};
-  for (const EdgeUse& use : result_.uses(edge)) {
-    for (const std::uint32_t corner : scene_.corners(pieces_[use.piece()])) box.include(vertices_[corner]);
-  }
-  return box;
-}
-
-NormalBounds SceneEdgesBuilder::normals_of_edge(std::uint32_t edge) const {
-  if (!is_balanced(edge)) return {};
-  const auto uses = result_.uses(edge);
-  NormalBounds bounds = normals_[uses.front().piece()];
-  for (const EdgeUse& use : uses.subspan(1)) include(bounds, normals_[use.piece()]);
-  return bounds;
-}
-
-void SceneEdgesBuilder::add_node(std::uint32_t first, std::uint32_t last) {
-  const auto index = static_cast<std::uint32_t>(result_.nodes_.size());
-  result_.nodes_.emplace_back();
-  Box box;
-  NormalBounds normals;
-  if (last - first <= kLeafSize) {
-    box = box_of_edge(order_[first].edge);
-    normals = normals_of_edge(order_[first].edge);
-    for (std::uint32_t i = first + 1; i < last; ++i) {
-      include(box, box_of_edge(order_[i].edge));
-      include(normals, normals_of_edge(order_[i].edge));
-    }
-  } else {
-    Box middles{order_[first].middle, order_[first].middle};
-    for (std::uint32_t i = first + 1; i < last; ++i) middles.include(order_[i].middle);
-    const int axis = longest_axis(middles);
-    const std::uint32_t half = first + (last - first) / 2;
-    std::nth_element(order_.begin() + first, order_.begin() + half, order_.begin() + last,
-                     [&](const Placed& a, const Placed& b) {
-                       const double u = kernel::coordinate(a.middle, axis), v = kernel::coordinate(b.middle, axis);
-                       return u != v ? u < v : a.edge < b.edge;
-                     });
-    add_node(first, half);
-    const auto right = static_cast<std::uint32_t>(result_.nodes_.size());
-    add_node(half, last);
-    SceneEdges::Node &node = result_.nodes_[index], &l = result_.nodes_[index + 1], &r = result_.nodes_[right];
-    node.right = right;
-    box = l.box;
-    include(box, r.box);
-    normals = {l.least_normal, l.largest_normal};
-    include(normals, {r.least_normal, r.largest_normal});
-  }
-  SceneEdges::Node& node = result_.nodes_[index];
-  node.box = box;
-  node.least_normal = normals.least;
-  node.largest_normal = normals.largest;
-  node.first = first;
-  node.last = last;
-}
-
-// Edges that are near each other get numbers that are near each other, and so do their uses.
-void SceneEdgesBuilder::number_in_order() {
-  std::vector<SceneEdge> edges;
-  std::vector<EdgeUse> uses;
-  std::vector<std::uint32_t> number(order_.size());
-  edges.reserve(result_.edges_.size());
-  uses.reserve(result_.uses_.size());
-  for (const Placed& placed : order_) {
-    const std::uint32_t edge = placed.edge;
-    number[edge] = static_cast<std::uint32_t>(edges.size());
-    edges.push_back({result_.edge(edge).a, result_.edge(edge).b, static_cast<std::uint32_t>(uses.size())});
-    const auto own = result_.uses(edge);
-    uses.insert(uses.end(), own.begin(), own.end());
-  }
-  edges.push_back({0, 0, static_cast<std::uint32_t>(uses.size())});
-  for (std::uint32_t& edge : result_.edge_of_corner_) edge = number[edge];  // of transparent pieces it is unused
-  result_.edges_ = std::move(edges);
-  result_.uses_ = std::move(uses);
-}
 
 std::span<const std::uint32_t> SceneEdges::of_piece(const Piece& piece) const {
   return {edge_of_corner_.data() + piece.first_corner, piece.corner_count};
@@ -363,38 +351,36 @@ class Bodies {
     while (parent_[place] != place) place = parent_[place] = parent_[parent_[place]];
     return place;
   }
-  void join_corners();
-  void count();
+
+  void join_corners() {
+    for (const Piece& piece : scene_.pieces()) {
+      if (piece.transparent) continue;
+      const auto corners = scene_.corners(piece);
+      const std::uint32_t first = places_[corners.front()];
+      for (const std::uint32_t corner : corners) parent_[root(places_[corner])] = root(first);
+    }
+  }
+
+  void count() {
+    std::vector<bool> used(places_.size());
+    for (const Piece& piece : scene_.pieces()) {
+      if (piece.transparent) continue;
+      const auto corners = scene_.corners(piece);
+      Body& body = bodies_[root(places_[corners.front()])];
+      body.pieces += 1.0;
+      body.corners += static_cast<double>(corners.size());
+      for (const std::uint32_t corner : corners) used[places_[corner]] = true;
+    }
+    for (std::uint32_t place = 0; place < used.size(); ++place) {
+      if (used[place]) bodies_[root(place)].places += 1.0;
+    }
+  }
 
   const Scene& scene_;
   const std::span<const std::uint32_t> places_;
   std::vector<std::uint32_t> parent_;  // by place
   std::vector<Body> bodies_;
 };
-
-void Bodies::join_corners() {
-  for (const Piece& piece : scene_.pieces()) {
-    if (piece.transparent) continue;
-    const auto corners = scene_.corners(piece);
-    const std::uint32_t first = places_[corners.front()];
-    for (const std::uint32_t corner : corners) parent_[root(places_[corner])] = root(first);
-  }
-}
-
-void Bodies::count() {
-  std::vector<bool> used(places_.size());
-  for (const Piece& piece : scene_.pieces()) {
-    if (piece.transparent) continue;
-    const auto corners = scene_.corners(piece);
-    Body& body = bodies_[root(places_[corners.front()])];
-    body.pieces += 1.0;
-    body.corners += static_cast<double>(corners.size());
-    for (const std::uint32_t corner : corners) used[places_[corner]] = true;
-  }
-  for (std::uint32_t place = 0; place < used.size(); ++place) {
-    if (used[place]) bodies_[root(place)].places += 1.0;
-  }
-}
 
 double by_bodies(const Scene& scene) {
   double edges = 0.0, silhouettes = 0.0;

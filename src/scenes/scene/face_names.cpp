@@ -1,7 +1,6 @@
 // Names for faces that selectors find.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "scene/geometry_patches.h"
 #include "scene/scene.h"
 #include "scene/scene_copy.h"
+#include "scene/selections.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -126,7 +126,7 @@ IsWanted by_name(const Scene& scene, std::string_view selector) {
                                        colon == std::string_view::npos ? "" : selector.substr(0, colon), &Patch::name);
   const bool is_list = patch != scene.patches().end() &&
                        selector.substr(colon + 1).find_first_not_of("0123456789-, ") == std::string_view::npos &&
-                       std::ranges::find(scene.patches(), selector, &Patch::name) == scene.patches().end();
+                       !has_patch(scene, selector);
   if (!is_list) {
     for (const Selection& one : scene.select_all(selector)) {
       for (const FaceId face : scene.faces_of(one)) wanted[index_of(face)] = true;
@@ -147,7 +147,7 @@ IsWanted by_name(const Scene& scene, std::string_view selector) {
 
 IsWanted wanted_by(const Scene& scene, std::string_view selector) {
   // A patch may have a name that looks like a selector.
-  const bool is_patch = std::ranges::find(scene.patches(), selector, &Patch::name) != scene.patches().end();
+  const bool is_patch = has_patch(scene, selector);
   if (!is_patch && selector.starts_with("box:")) return in_box(scene, selector);
   if (!is_patch && selector.starts_with("normal:")) return by_normal(scene, selector);
   if (!is_patch && selector.starts_with("plane:")) return in_plane(scene, selector);

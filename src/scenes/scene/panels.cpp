@@ -56,29 +56,207 @@ class Joiner {
       : scene_(scene), pieces_(scene.pieces()), vertices_(scene.vertices()), places_(places(scene)) {}
 
   // Sets of at least two faces, each ascending, by their first pieces.
-  [[nodiscard]] std::vector<std::vector<std::uint32_t>> connected_sets();
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> connected_sets() {
+    parent_.resize(pieces_.size());
+    std::iota(parent_.begin(), parent_.end(), 0U);
+    std::vector<EdgeOfPiece> single;
+    if (scene_.transparent().empty()) {
+      single = connect_sorted(scene_edges(scene_));
+    } else {
+      for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece) add_edges(piece, single);
+      connect(single);
+    }
+    connect_at_junctions(single);
+    std::vector<std::vector<std::uint32_t>> sets;
+    if (!several_faces_) return sets;
+    std::map<std::uint32_t, std::size_t> set_of_root;
+    for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece) {
+      const std::uint32_t first = root(piece);
+      if (first == piece) continue;
+      const auto [at, is_new] = set_of_root.try_emplace(first, sets.size());
+      if (is_new) sets.push_back({first});
+      sets[at->second].push_back(piece);
+    }
+    std::erase_if(sets, [&](const std::vector<std::uint32_t>& set) {
+      return pieces_[set.front()].face == pieces_[set.back()].face;
+    });
+    return sets;
+  }
+
   // The convex parts of a set's union, if they are fewer than its pieces.
-  [[nodiscard]] std::optional<std::vector<ConvexPart>> parts_of(std::span<const std::uint32_t> set) const;
+  [[nodiscard]] std::optional<std::vector<ConvexPart>> parts_of(std::span<const std::uint32_t> set) const {
+    std::optional<std::vector<Ring>> rings = boundary_of(set);
+    if (!rings) return std::nullopt;
+    // The outer ring first: the one that runs as the pieces do.
+    const kernel::ExactVec3 front = normal(pieces_[set.front()]);
+    const FacePoints points = face_points(vertices_, *rings);
+    std::size_t outer = 0, outer_count = 0;
+    for (std::size_t r = 0; r < rings->size(); ++r) {
+      const int sense = kernel::sign(dot(front, newell(points, points.ring_start[r], points.ring_start[r + 1])));
+      if (sense > 0) ++outer_count, outer = r;
+    }
+    if (outer_count != 1) return std::nullopt;
+    std::swap(rings->front(), (*rings)[outer]);
+    CutFace cut = cut_face(vertices_, *rings);
+    if (cut.fault || cut.shape != FaceShape::kPlanar || cut.parts.size() >= set.size()) return std::nullopt;
+    if (!have_one_area(*rings, cut.parts)) return std::nullopt;
+    return std::move(cut.parts);
+  }
 
  private:
-  void add_edges(std::uint32_t piece, std::vector<EdgeOfPiece>& edges) const;
+  void add_edges(std::uint32_t piece, std::vector<EdgeOfPiece>& edges) const {
+    const auto corners = scene_.corners(pieces_[piece]);
+    std::uint32_t from = places_[corners.back()];
+    for (const std::uint32_t corner : corners) {
+      const std::uint32_t to = places_[corner];
+      edges.push_back({std::min(from, to), std::max(from, to), piece, from < to});
+      from = to;
+    }
+  }
+
+  // All uses of an edge.
   template <class Iterator>
-  void connect_along(Iterator first, Iterator last);
-  void connect(std::vector<EdgeOfPiece>& edges);
-  std::vector<EdgeOfPiece> connect_sorted(const SceneEdges& edges);
-  void connect_at_junctions(std::vector<EdgeOfPiece>& single);
+  void connect_along(Iterator first, Iterator last) {
+    if (last - first != 2 || !lie_side_by_side(*first, *(first + 1))) return;
+    const std::uint32_t a = root(first->piece), b = root((first + 1)->piece);
+    parent_[std::max(a, b)] = std::min(a, b);
+    several_faces_ = several_faces_ || pieces_[first->piece].face != pieces_[(first + 1)->piece].face;
+  }
+
+  // Leaves the edges that only one piece has.
+  void connect(std::vector<EdgeOfPiece>& edges) {
+    auto single = edges.begin();
+    for_each_edge(edges, [&](auto first, auto last) {
+      if (last - first == 1) *single++ = *first;
+      connect_along(first, last);
+    });
+    edges.erase(single, edges.end());
+  }
+
+  // The same for all edges of the scene, which have been sorted for silhouettes, too. Transparent pieces have none
+  // there.
+  std::vector<EdgeOfPiece> connect_sorted(const SceneEdges& edges) {
+    std::vector<EdgeOfPiece> single, uses;
+    for (std::uint32_t id = 0; id < edges.size(); ++id) {
+      uses.clear();
+      for (const EdgeUse& use : edges.uses(id)) {
+        uses.push_back({edges.edge(id).a, edges.edge(id).b, use.piece(), use.upwards()});
+      }
+      if (uses.size() == 1) single.push_back(uses.front());
+      connect_along(uses.begin(), uses.end());
+    }
+    return single;
+  }
+
+  void connect_at_junctions(std::vector<EdgeOfPiece>& single) {
+    std::ranges::stable_sort(single, {}, [&](const EdgeOfPiece& edge) { return patch_of(edge); });
+    std::vector<EdgeOfPiece> of_patch;
+    for (auto first = single.begin(); first != single.end();) {
+      const auto last =
+          std::find_if(first, single.end(), [&](const auto& e) { return patch_of(e) != patch_of(*first); });
+      of_patch.assign(first, last);
+      first = last;
+      const std::size_t count = of_patch.size();
+      cut_at_junctions(of_patch, vertices_);
+      if (of_patch.size() > count) connect(of_patch);
+    }
+  }
+
   [[nodiscard]] PatchId patch_of(const EdgeOfPiece& edge) const { return scene_.face(pieces_[edge.piece].face).patch; }
-  [[nodiscard]] bool lie_side_by_side(const EdgeOfPiece& a, const EdgeOfPiece& b) const;
-  [[nodiscard]] bool is_in_plane(const Piece& piece, std::uint32_t vertex) const;
-  [[nodiscard]] kernel::ExactVec3 normal(const Piece& piece) const;
+
+  // The pieces lie on different sides of the edge, in one plane, with their fronts on one side of it.
+  [[nodiscard]] bool lie_side_by_side(const EdgeOfPiece& a, const EdgeOfPiece& b) const {
+    const Piece &p = pieces_[a.piece], &q = pieces_[b.piece];
+    if (a.upwards == b.upwards || p.transparent != q.transparent) return false;
+    const Face &f = scene_.face(p.face), &g = scene_.face(q.face);
+    if (f.patch != g.patch || f.shape != FaceShape::kPlanar || g.shape != FaceShape::kPlanar) return false;
+    for (const std::uint32_t vertex : q.frame) {
+      if (!is_in_plane(p, vertex)) return false;
+    }
+    return kernel::sign(dot(normal(p), normal(q))) > 0;
+  }
+
+  [[nodiscard]] bool is_in_plane(const Piece& piece, std::uint32_t vertex) const {
+    const Vec3 &x = vertices_[vertex], &a = vertices_[piece.frame[0]], &b = vertices_[piece.frame[1]],
+               &c = vertices_[piece.frame[2]];
+    if (x == a || x == b || x == c) return true;
+    using kernel::approx_difference;
+    const int filtered = kernel::sign_of_det(approx_difference(a, x), approx_difference(b, x), approx_difference(c, x));
+    return (filtered != kernel::kUncertain ? filtered : kernel::orientation(x, a, b, c)) == 0;
+  }
+
+  [[nodiscard]] kernel::ExactVec3 normal(const Piece& piece) const {
+    const Vec3& a = vertices_[piece.frame[0]];
+    return cross(kernel::exact_difference(vertices_[piece.frame[1]], a).v,
+                 kernel::exact_difference(vertices_[piece.frame[2]], a).v);
+  }
+
   [[nodiscard]] std::uint32_t root(std::uint32_t piece) {
     while (parent_[piece] != piece) piece = parent_[piece] = parent_[parent_[piece]];
     return piece;
   }
-  [[nodiscard]] std::optional<std::vector<Ring>> boundary_of(std::span<const std::uint32_t> set) const;
-  [[nodiscard]] Ring without_straight_corners(Ring ring) const;
-  [[nodiscard]] bool are_straight(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
-  [[nodiscard]] bool have_one_area(const std::vector<Ring>& rings, const std::vector<ConvexPart>& parts) const;
+
+  // Nullopt where pieces overlap for certain.
+  [[nodiscard]] std::optional<std::vector<Ring>> boundary_of(std::span<const std::uint32_t> set) const {
+    std::vector<EdgeOfPiece> edges;
+    for (const std::uint32_t piece : set) add_edges(piece, edges);
+    if (!cancel(edges)) return std::nullopt;
+    cut_at_junctions(edges, vertices_);
+    if (!cancel(edges)) return std::nullopt;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> left;  // from, to
+    for (const EdgeOfPiece& edge : edges) {
+      left.emplace_back(edge.upwards ? edge.low : edge.high, edge.upwards ? edge.high : edge.low);
+    }
+    // As many edges end at a place as begin there, so every chain ends where it began.
+    std::ranges::sort(left);
+    std::vector<bool> used(left.size());
+    std::vector<Ring> rings;
+    for (std::size_t start = 0; start < left.size(); ++start) {
+      if (used[start]) continue;
+      Ring ring;
+      for (std::size_t at = start;;) {
+        used[at] = true;
+        ring.push_back(left[at].first);
+        if (left[at].second == left[start].first) break;
+        at = static_cast<std::size_t>(std::ranges::lower_bound(left, std::pair(left[at].second, 0U)) - left.begin());
+        while (used[at]) ++at;
+      }
+      ring = without_straight_corners(std::move(ring));
+      if (!ring.empty()) rings.push_back(std::move(ring));
+    }
+    return rings;
+  }
+
+  // Without corners on a line with their neighbours. Winding numbers do not change, almost everywhere.
+  [[nodiscard]] Ring without_straight_corners(Ring ring) const {
+    Ring kept;
+    const auto drop_straight = [&](std::uint32_t next) {
+      while (kept.size() > 1 && are_straight(kept[kept.size() - 2], kept.back(), next)) kept.pop_back();
+    };
+    for (const std::uint32_t corner : ring) {
+      drop_straight(corner);
+      kept.push_back(corner);
+    }
+    while (kept.size() > 2 && are_straight(kept[kept.size() - 2], kept.back(), kept.front())) kept.pop_back();
+    while (kept.size() > 2 && are_straight(kept.back(), kept.front(), kept[1])) kept.erase(kept.begin());
+    return kept.size() > 2 ? kept : Ring{};
+  }
+
+  [[nodiscard]] bool are_straight(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    return exactff::are_straight(vertices_[a], vertices_[b], vertices_[c]);
+  }
+
+  [[nodiscard]] bool have_one_area(const std::vector<Ring>& rings, const std::vector<ConvexPart>& parts) const {
+    std::vector<Ring> all = rings;
+    for (const ConvexPart& part : parts) all.push_back(part.corners);
+    const FacePoints points = face_points(vertices_, all);
+    kernel::ExactVec3 difference;
+    for (std::size_t r = 0; r < all.size(); ++r) {
+      const kernel::ExactVec3 area = newell(points, points.ring_start[r], points.ring_start[r + 1]);
+      difference = r < rings.size() ? difference + area : difference - area;
+    }
+    return is_zero(difference);
+  }
 
   const Scene& scene_;
   const std::span<const Piece> pieces_;
@@ -87,197 +265,6 @@ class Joiner {
   std::vector<std::uint32_t> parent_;  // by piece
   bool several_faces_ = false;         // in a set
 };
-
-void Joiner::add_edges(std::uint32_t piece, std::vector<EdgeOfPiece>& edges) const {
-  const auto corners = scene_.corners(pieces_[piece]);
-  std::uint32_t from = places_[corners.back()];
-  for (const std::uint32_t corner : corners) {
-    const std::uint32_t to = places_[corner];
-    edges.push_back({std::min(from, to), std::max(from, to), piece, from < to});
-    from = to;
-  }
-}
-
-std::vector<std::vector<std::uint32_t>> Joiner::connected_sets() {
-  parent_.resize(pieces_.size());
-  std::iota(parent_.begin(), parent_.end(), 0U);
-  std::vector<EdgeOfPiece> single;
-  if (scene_.transparent().empty()) {
-    single = connect_sorted(scene_edges(scene_));
-  } else {
-    for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece) add_edges(piece, single);
-    connect(single);
-  }
-  connect_at_junctions(single);
-  std::vector<std::vector<std::uint32_t>> sets;
-  if (!several_faces_) return sets;
-  std::map<std::uint32_t, std::size_t> set_of_root;
-  for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece) {
-    const std::uint32_t first = root(piece);
-    if (first == piece) continue;
-    const auto [at, is_new] = set_of_root.try_emplace(first, sets.size());
-    if (is_new) sets.push_back({first});
-    sets[at->second].push_back(piece);
-  }
-  std::erase_if(sets, [&](const std::vector<std::uint32_t>& set) {
-    return pieces_[set.front()].face == pieces_[set.back()].face;
-  });
-  return sets;
-}
-
-// All uses of an edge.
-template <class Iterator>
-void Joiner::connect_along(Iterator first, Iterator last) {
-  if (last - first != 2 || !lie_side_by_side(*first, *(first + 1))) return;
-  const std::uint32_t a = root(first->piece), b = root((first + 1)->piece);
-  parent_[std::max(a, b)] = std::min(a, b);
-  several_faces_ = several_faces_ || pieces_[first->piece].face != pieces_[(first + 1)->piece].face;
-}
-
-// Leaves the edges that only one piece has.
-void Joiner::connect(std::vector<EdgeOfPiece>& edges) {
-  auto single = edges.begin();
-  for_each_edge(edges, [&](auto first, auto last) {
-    if (last - first == 1) *single++ = *first;
-    connect_along(first, last);
-  });
-  edges.erase(single, edges.end());
-}
-
-// The same for all edges of the scene, which have been sorted for silhouettes, too. Transparent pieces have none there.
-std::vector<EdgeOfPiece> Joiner::connect_sorted(const SceneEdges& edges) {
-  std::vector<EdgeOfPiece> single, uses;
-  for (std::uint32_t id = 0; id < edges.size(); ++id) {
-    uses.clear();
-    for (const EdgeUse& use : edges.uses(id)) {
-      uses.push_back({edges.edge(id).a, edges.edge(id).b, use.piece(), use.upwards()});
-    }
-    if (uses.size() == 1) single.push_back(uses.front());
-    connect_along(uses.begin(), uses.end());
-  }
-  return single;
-}
-
-void Joiner::connect_at_junctions(std::vector<EdgeOfPiece>& single) {
-  std::ranges::stable_sort(single, {}, [&](const EdgeOfPiece& edge) { return patch_of(edge); });
-  std::vector<EdgeOfPiece> of_patch;
-  for (auto first = single.begin(); first != single.end();) {
-    const auto last = std::find_if(first, single.end(), [&](const auto& e) { return patch_of(e) != patch_of(*first); });
-    of_patch.assign(first, last);
-    first = last;
-    const std::size_t count = of_patch.size();
-    cut_at_junctions(of_patch, vertices_);
-    if (of_patch.size() > count) connect(of_patch);
-  }
-}
-
-// The pieces lie on different sides of the edge, in one plane, with their fronts on one side of it.
-bool Joiner::lie_side_by_side(const EdgeOfPiece& a, const EdgeOfPiece& b) const {
-  const Piece &p = pieces_[a.piece], &q = pieces_[b.piece];
-  if (a.upwards == b.upwards || p.transparent != q.transparent) return false;
-  const Face &f = scene_.face(p.face), &g = scene_.face(q.face);
-  if (f.patch != g.patch || f.shape != FaceShape::kPlanar || g.shape != FaceShape::kPlanar) return false;
-  for (const std::uint32_t vertex : q.frame) {
-    if (!is_in_plane(p, vertex)) return false;
-  }
-  return kernel::sign(dot(normal(p), normal(q))) > 0;
-}
-
-bool Joiner::is_in_plane(const Piece& piece, std::uint32_t vertex) const {
-  const Vec3 &x = vertices_[vertex], &a = vertices_[piece.frame[0]], &b = vertices_[piece.frame[1]],
-             &c = vertices_[piece.frame[2]];
-  if (x == a || x == b || x == c) return true;
-  using kernel::approx_difference;
-  const int filtered = kernel::sign_of_det(approx_difference(a, x), approx_difference(b, x), approx_difference(c, x));
-  return (filtered != kernel::kUncertain ? filtered : kernel::orientation(x, a, b, c)) == 0;
-}
-
-kernel::ExactVec3 Joiner::normal(const Piece& piece) const {
-  const Vec3& a = vertices_[piece.frame[0]];
-  return cross(kernel::exact_difference(vertices_[piece.frame[1]], a).v,
-               kernel::exact_difference(vertices_[piece.frame[2]], a).v);
-}
-
-std::optional<std::vector<ConvexPart>> Joiner::parts_of(std::span<const std::uint32_t> set) const {
-  std::optional<std::vector<Ring>> rings = boundary_of(set);
-  if (!rings) return std::nullopt;
-  // The outer ring first: the one that runs as the pieces do.
-  const kernel::ExactVec3 front = normal(pieces_[set.front()]);
-  const FacePoints points = face_points(vertices_, *rings);
-  std::size_t outer = 0, outer_count = 0;
-  for (std::size_t r = 0; r < rings->size(); ++r) {
-    const int sense = kernel::sign(dot(front, newell(points, points.ring_start[r], points.ring_start[r + 1])));
-    if (sense > 0) ++outer_count, outer = r;
-  }
-  if (outer_count != 1) return std::nullopt;
-  std::swap(rings->front(), (*rings)[outer]);
-  CutFace cut = cut_face(vertices_, *rings);
-  if (cut.fault || cut.shape != FaceShape::kPlanar || cut.parts.size() >= set.size()) return std::nullopt;
-  if (!have_one_area(*rings, cut.parts)) return std::nullopt;
-  return std::move(cut.parts);
-}
-
-// Nullopt where pieces overlap for certain.
-std::optional<std::vector<Ring>> Joiner::boundary_of(std::span<const std::uint32_t> set) const {
-  std::vector<EdgeOfPiece> edges;
-  for (const std::uint32_t piece : set) add_edges(piece, edges);
-  if (!cancel(edges)) return std::nullopt;
-  cut_at_junctions(edges, vertices_);
-  if (!cancel(edges)) return std::nullopt;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> left;  // from, to
-  for (const EdgeOfPiece& edge : edges) {
-    left.emplace_back(edge.upwards ? edge.low : edge.high, edge.upwards ? edge.high : edge.low);
-  }
-  // As many edges end at a place as begin there, so every chain ends where it began.
-  std::ranges::sort(left);
-  std::vector<bool> used(left.size());
-  std::vector<Ring> rings;
-  for (std::size_t start = 0; start < left.size(); ++start) {
-    if (used[start]) continue;
-    Ring ring;
-    for (std::size_t at = start;;) {
-      used[at] = true;
-      ring.push_back(left[at].first);
-      if (left[at].second == left[start].first) break;
-      at = static_cast<std::size_t>(std::ranges::lower_bound(left, std::pair(left[at].second, 0U)) - left.begin());
-      while (used[at]) ++at;
-    }
-    ring = without_straight_corners(std::move(ring));
-    if (!ring.empty()) rings.push_back(std::move(ring));
-  }
-  return rings;
-}
-
-// Without corners on a line with their neighbours. Winding numbers do not change, almost everywhere.
-Ring Joiner::without_straight_corners(Ring ring) const {
-  Ring kept;
-  const auto drop_straight = [&](std::uint32_t next) {
-    while (kept.size() > 1 && are_straight(kept[kept.size() - 2], kept.back(), next)) kept.pop_back();
-  };
-  for (const std::uint32_t corner : ring) {
-    drop_straight(corner);
-    kept.push_back(corner);
-  }
-  while (kept.size() > 2 && are_straight(kept[kept.size() - 2], kept.back(), kept.front())) kept.pop_back();
-  while (kept.size() > 2 && are_straight(kept.back(), kept.front(), kept[1])) kept.erase(kept.begin());
-  return kept.size() > 2 ? kept : Ring{};
-}
-
-bool Joiner::are_straight(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
-  return exactff::are_straight(vertices_[a], vertices_[b], vertices_[c]);
-}
-
-bool Joiner::have_one_area(const std::vector<Ring>& rings, const std::vector<ConvexPart>& parts) const {
-  std::vector<Ring> all = rings;
-  for (const ConvexPart& part : parts) all.push_back(part.corners);
-  const FacePoints points = face_points(vertices_, all);
-  kernel::ExactVec3 difference;
-  for (std::size_t r = 0; r < all.size(); ++r) {
-    const kernel::ExactVec3 area = newell(points, points.ring_start[r], points.ring_start[r + 1]);
-    difference = r < rings.size() ? difference + area : difference - area;
-  }
-  return is_zero(difference);
-}
 
 std::uint32_t common_surface(const Scene& scene, std::span<const std::uint32_t> pieces) {
   const ClosedSurfaces& surfaces = closed_surfaces(scene);

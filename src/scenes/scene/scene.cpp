@@ -16,6 +16,7 @@
 #include "text/hashes.h"
 #include "text/names.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "text/text_lines.h"
 
 namespace exactff {
@@ -89,15 +90,15 @@ Selection Scene::select(std::string_view name) const {
   const auto owner = parts ? by_name.find(parts->patch) : by_name.end();
   if (owner == by_name.end()) {
     if (!text::is_utf8(name)) return select(text::in_utf8(name));  // as the readers of scenes do with names
-    throw InputError({data().file, 0, "there is no patch named " + text::in_quotes(name, text::kShownName),
-                      "names must match exactly", choice_of_names(*this, parts ? parts->patch : name)});
+    text::refuse(data().file, "there is no patch named " + text::in_quotes(name, text::kShownName),
+                 "names must match exactly", choice_of_names(*this, parts ? parts->patch : name));
   }
   const std::vector<FaceId>& faces = patch(owner->second).faces;
   if (parts->number < 1 || parts->number > faces.size()) {
-    throw InputError(
-        {data().file, 0, "there is no face " + text::in_quotes(name, text::kShownName),
-         "patch " + text::in_quotes(parts->patch, text::kShownName) + " has " + text::counted(faces.size(), "face"),
-         "faces are numbered from 1"});
+    text::refuse(
+        data().file, "there is no face " + text::in_quotes(name, text::kShownName),
+        "patch " + text::in_quotes(parts->patch, text::kShownName) + " has " + text::counted(faces.size(), "face"),
+        "faces are numbered from 1");
   }
   const FaceId face_id = faces[parts->number - 1];
   if (face(face_id).shape == FaceShape::kSkipped) {
@@ -155,9 +156,8 @@ std::vector<Selection> Scene::select_all(std::string_view name) const {
   if (!is_pattern(name)) return {select(name)};
   found = selections_like(*this, name);
   if (!found.empty()) return found;
-  throw InputError({data().file, 0, "no patch or face has a name like " + text::in_quotes(name, text::kShownName),
-                    "* stands for any text, ? for one character, [...] for one of several",
-                    choice_of_names(*this, name)});
+  text::refuse(data().file, "no patch or face has a name like " + text::in_quotes(name, text::kShownName),
+               "* stands for any text, ? for one character, [...] for one of several", choice_of_names(*this, name));
 }
 
 std::string Scene::name_of(const Selection& selection) const {

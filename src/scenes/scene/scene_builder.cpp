@@ -13,6 +13,7 @@
 #include "scene/triangulation.h"
 #include "text/names.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "text/text_lines.h"
 
 namespace exactff {
@@ -41,9 +42,7 @@ double metres(Unit unit) { return unit == Unit::kNone ? 1.0 : tenths_of_millimet
 Unit unit_named(std::string_view text) {
   const auto* const found = std::ranges::find(kUnits, text, &UnitRow::name);
   if (found != kUnits.end() && found->unit != Unit::kNone) return found->unit;
-  throw InputError({.what = text::in_quotes(text) + " is no unit of length",
-                    .why = "units are mm, cm, m, in and ft",
-                    .suggestion = "choose one of them"});
+  text::refuse(text::in_quotes(text) + " is no unit of length", "units are mm, cm, m, in and ft", "choose one of them");
 }
 
 using Rings = std::vector<std::vector<std::uint32_t>>;

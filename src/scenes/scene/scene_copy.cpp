@@ -90,7 +90,7 @@ SceneCopy::SceneCopy(const Scene& scene, const Vec3& origin)
 }
 
 Selection SceneCopy::add_patch(std::string name) {
-  while (std::ranges::any_of(scene_.patches(), [&](const Patch& p) { return p.name == name; })) name += '\'';
+  while (has_patch(scene_, name)) name += '\'';
   return {builder_.patch(name), {}};
 }
 
@@ -244,25 +244,12 @@ void Scene::set_warnings_of_glass() {
   warnings.insert(warnings.begin(), std::move_iterator(glass.begin()), std::move_iterator(glass.end()));
 }
 
-namespace {
-
-template <class Changed>
-std::vector<Selection> changed_faces(const Scene& scene, const Changed& changed) {
-  std::vector<FaceId> faces;
-  for (std::size_t i = 0; i < scene.faces().size(); ++i) {
-    if (changed(scene.faces()[i])) faces.push_back(static_cast<FaceId>(i));
-  }
-  return selections_of(scene, faces);
-}
-
-}  // namespace
-
 std::vector<Selection> Scene::flipped() const {
-  return changed_faces(*this, [](const Face& face) { return face.flipped; });
+  return selections_of(*this, faces_where(*this, [](const Face& face) { return face.flipped; }));
 }
 
 std::vector<Selection> Scene::transparent() const {
-  return changed_faces(*this, [](const Face& face) { return face.transparent; });
+  return selections_of(*this, faces_where(*this, [](const Face& face) { return face.transparent; }));
 }
 
 }  // namespace exactff

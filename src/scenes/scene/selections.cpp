@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "text/escape.h"
+#include "text/phrases.h"
 #include "text/text_lines.h"
 
 namespace exactff {
@@ -14,6 +15,12 @@ bool emits(const Scene& scene, const Selection& selection) {
 
 bool has_patch(const Scene& scene, std::string_view name) {
   return std::ranges::any_of(scene.patches(), [&](const Patch& patch) { return patch.name == name; });
+}
+
+std::vector<std::string> names_of(const Scene& scene, std::span<const Selection> selections) {
+  std::vector<std::string> names;
+  for (const Selection& selection : selections) names.push_back(scene.name_of(selection));
+  return names;
 }
 
 std::vector<Selection> all_patches(const Scene& scene) {
@@ -65,15 +72,10 @@ std::string flag_words(const Scene& scene, std::string_view flag, std::span<cons
 
 std::string listed(const Scene& scene, std::span<const Selection> selections) {
   constexpr std::size_t kShown = 6;
-  std::string text;
-  const std::size_t shown = std::min(kShown, selections.size());
-  const std::size_t others = selections.size() - shown;
-  for (std::size_t i = 0; i < shown; ++i) {
-    const bool last = i + 1 == shown && others == 0;
-    text += i == 0 ? "" : last ? " and " : ", ";
-    text += text::in_quotes(scene.name_of(selections[i]), text::kShownName);
-  }
-  return others == 0 ? text : text + " and " + std::to_string(others) + " more";
+  std::vector<std::string> words = names_of(scene, selections.first(std::min(kShown, selections.size())));
+  for (std::string& word : words) word = text::in_quotes(word, text::kShownName);
+  if (selections.size() > kShown) words.push_back(std::to_string(selections.size() - kShown) + " more");
+  return text::enumerate(words);
 }
 
 }  // namespace exactff

@@ -1,6 +1,7 @@
 // Selections: what they emit, and the words of a flag for them.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,7 +14,18 @@ namespace exactff {
 // Whether a face with area has a Ke other than 0. A source without counts with a radiosity of 1 where it is named.
 [[nodiscard]] bool emits(const Scene& scene, const Selection& selection);
 
+[[nodiscard]] std::vector<std::string> names_of(const Scene& scene, std::span<const Selection> selections);
+
 [[nodiscard]] bool has_patch(const Scene& scene, std::string_view name);
+// Those of which the test holds, in their order.
+template <class Test>
+[[nodiscard]] std::vector<FaceId> faces_where(const Scene& scene, const Test& test) {
+  std::vector<FaceId> faces;
+  for (std::uint32_t f = 0; f < scene.faces().size(); ++f) {
+    if (test(scene.faces()[f])) faces.push_back(FaceId{f});
+  }
+  return faces;
+}
 // Those with area.
 [[nodiscard]] std::vector<Selection> all_patches(const Scene& scene);
 

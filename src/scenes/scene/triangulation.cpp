@@ -61,18 +61,171 @@ class FaceCutter {
   }
 
  private:
-  void cut();
-  void take_triangle();
-  void cut_planar(const ExactVec3& normal);
-  void cut_region(const PlanePoints& plane);
-  void without_newell(const ExactVec3& normal);
-  void cut_other();
-  bool is_convex(const PlanePoints& plane) const;
-  bool leaves_gap(const std::vector<TriangleIndices>& triangles) const;
-  void add_part(const PlanePoints& plane, std::span<const std::size_t> corners);
-  void report(const PlanarRegion& region);
-  void report_crossing(std::pair<EdgeIndex, EdgeIndex> edges);
-  std::string edge_text(EdgeIndex edge) const;
+  void cut() {
+    const ExactVec3 normal = some_normal(points_);
+    if (is_zero(normal)) {
+      face_.shape = FaceShape::kZeroArea;
+      return;
+    }
+    const bool triangle = points_.size() == 3 && points_.ring_count() == 1;
+    newell_ = triangle ? normal : newell(points_, 0, points_.ring_start[1]);
+    face_.newell = nearest_vector(newell_, 2 * points_.exponent - 1);
+    if (triangle) {
+      take_triangle();
+    } else if (all_in_plane(points_, normal)) {
+      cut_planar(normal);
+    } else {
+      cut_other();
+    }
+    face_.area = to_double({twice_area_.mantissa, twice_area_.exponent + 2 * points_.exponent - 1});
+  }
+
+  // By far the most common face, always planar and convex.
+  void take_triangle() {
+    const std::vector<std::uint32_t>& v = points_.vertex;
+    face_.parts.push_back({v, {v[0], v[1], v[2]}});
+    twice_area_ = length(newell_);
+  }
+
+  void cut_planar(const ExactVec3& normal) {
+    if (is_zero(newell_)) return without_newell(normal);
+    const PlanePoints plane(points_, newell_, PlanePoints::Projection::kDropAxis);
+    if (!is_convex(plane)) return cut_region(plane);
+    std::vector<std::size_t> all(points_.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+    add_part(plane, all);
+  }
+
+  void cut_region(const PlanePoints& plane) {
+    const PlanarRegion region = planar_region(vertices_, points_, plane, newell_);
+    report(region);
+    for (const auto& part : region.parts) add_part(plane, part);
+    if (!face_.fault && face_.parts.empty()) face_.shape = FaceShape::kZeroArea;  // the holes remove everything
+  }
+
+  // Planar, with corners not on one line: a tree of edges walked there and back, or two lobes of opposite sense.
+  void without_newell(const ExactVec3& normal) {
+    const PlanePoints plane(points_, normal, PlanePoints::Projection::kDropAxis);
+    const PlanarRegion region = planar_region(vertices_, points_, plane, normal);
+    if (region.fault == RegionFault::kCrossing) return report(region);
+    face_.shape = FaceShape::kZeroArea;
+    if (region.encloses_something) {
+      face_.fault = {"encloses area, but its Newell vector (area times normal) is zero", "it has no front side",
+                     "split it into simple polygons"};
+    }
+  }
+
+  void cut_other() {
+    face_.shape = FaceShape::kTriangulated;
+    if (points_.ring_count() > 1) {
+      face_.fault = {"has holes, but its vertices are not exactly in one plane",
+                     "the position of the holes is not defined",
+                     "connect the holes to the outer ring, or use triangles"};
+      return;
+    }
+    if (is_zero(newell_)) {
+      face_.fault = {"has area, but its Newell vector (area times normal) is zero", "it has no front side",
+                     "split it into simple polygons"};
+      return;
+    }
+    face_.out_of_plane = out_of_plane(points_, newell_);
+    const PlanePoints plane(points_, newell_, PlanePoints::Projection::kAlongNormal);
+    const auto triangles = clip_ears(plane, points_.vertex);
+    if (const auto crossing = triangles && points_.size() == 4 ? std::nullopt : find_crossing(points_, plane)) {
+      return report_crossing(*crossing);
+    }
+    if (!triangles) {
+      face_.fault = {
+          "is not planar, and its projection along its Newell vector (area times normal) is not a simple polygon",
+          "it cannot be cut into triangles", "split it into simple polygons"};
+      return;
+    }
+    if (leaves_gap(*triangles)) {
+      face_.fault = {
+          "is not planar, and some of its corners coincide when projected along its Newell vector (area times normal)",
+          "triangulated in this projection, it would have a gap", "split it into simple polygons"};
+      return;
+    }
+    for (const TriangleIndices& triangle : *triangles) add_part(plane, triangle);
+  }
+
+  // Turns left or goes straight on at every corner, and goes around once: the x direction changes its sign twice.
+  bool is_convex(const PlanePoints& plane) const {
+    const std::size_t n = points_.size();
+    if (points_.ring_count() > 1) return false;
+    int changes = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t j = (i + 1) % n;
+      const std::size_t k = (i + 2) % n;
+      if (plane.orientation(i, j, k) < 0) return false;
+      if (plane.compare(i, j) != plane.compare(j, k)) ++changes;
+    }
+    return changes == 2;
+  }
+
+  // True if anything but the ring bounds the triangles in space, not only as seen along the Newell vector.
+  bool leaves_gap(const std::vector<TriangleIndices>& triangles) const {
+    using Position = std::tuple<double, double, double>;
+    std::vector<std::pair<Position, Position>> sides, reversed;
+    const auto place = [&](std::size_t point) {
+      const Vec3& v = vertices_[points_.vertex[point]];
+      return Position{v.x, v.y, v.z};
+    };
+    const auto add = [&](std::size_t from, std::size_t to) {
+      const Position a = place(from), b = place(to);
+      if (a < b) sides.emplace_back(a, b);
+      if (b < a) reversed.emplace_back(b, a);
+    };
+    for (const auto& [a, b, c] : triangles) {
+      add(a, b);
+      add(b, c);
+      add(c, a);
+    }
+    for (std::size_t i = 0; i < points_.size(); ++i) add(next_in_ring(points_, i), i);
+    std::sort(sides.begin(), sides.end());
+    std::sort(reversed.begin(), reversed.end());
+    return sides != reversed;
+  }
+
+  void add_part(const PlanePoints& plane, std::span<const std::size_t> corners) {
+    ConvexPart part;
+    for (const std::size_t corner : corners) part.corners.push_back(points_.vertex[corner]);
+    std::size_t third = 2;
+    while (corners.size() > 3 && plane.orientation(corners[0], corners[1], corners[third]) == 0) ++third;
+    part.frame = {part.corners[0], part.corners[1], part.corners[third]};
+    twice_area_ = twice_area_ + length(newell(points_, corners));
+    face_.parts.push_back(std::move(part));
+  }
+
+  void report(const PlanarRegion& region) {
+    switch (region.fault) {
+      case RegionFault::kNone:
+        return;
+      case RegionFault::kCrossing:
+        return report_crossing(region.edges);
+      case RegionFault::kWinding:
+        face_.fault = {"winds around a part of its interior twice, or in the opposite direction",
+                       "its front side is ambiguous", "split it into simple polygons"};
+        return;
+      case RegionFault::kHoleOutside:
+        face_.fault = {"has a hole that reaches outside its outer ring", "a hole must lie inside its face",
+                       "make it a separate face, or move it"};
+        return;
+    }
+  }
+
+  void report_crossing(std::pair<EdgeIndex, EdgeIndex> edges) {
+    const bool holes = edges.second >= points_.ring_start[1];
+    face_.fault = {"crosses itself: edge " + edge_text(edges.first) + " and edge " + edge_text(edges.second) +
+                       " (vertex numbers) intersect",
+                   holes ? "a hole must lie inside its face" : "its interior is ambiguous",
+                   "split it into simple polygons"};
+  }
+
+  std::string edge_text(EdgeIndex edge) const {
+    return std::to_string(points_.vertex[edge] + 1) + "-" +
+           std::to_string(points_.vertex[next_in_ring(points_, edge)] + 1);
+  }
 
   std::span<const Vec3> vertices_;
   FacePoints points_;
@@ -80,171 +233,6 @@ class FaceCutter {
   Length twice_area_;
   CutFace face_;
 };
-
-void FaceCutter::cut() {
-  const ExactVec3 normal = some_normal(points_);
-  if (is_zero(normal)) {
-    face_.shape = FaceShape::kZeroArea;
-    return;
-  }
-  const bool triangle = points_.size() == 3 && points_.ring_count() == 1;
-  newell_ = triangle ? normal : newell(points_, 0, points_.ring_start[1]);
-  face_.newell = nearest_vector(newell_, 2 * points_.exponent - 1);
-  if (triangle) {
-    take_triangle();
-  } else if (all_in_plane(points_, normal)) {
-    cut_planar(normal);
-  } else {
-    cut_other();
-  }
-  face_.area = to_double({twice_area_.mantissa, twice_area_.exponent + 2 * points_.exponent - 1});
-}
-
-// By far the most common face, always planar and convex.
-void FaceCutter::take_triangle() {
-  const std::vector<std::uint32_t>& v = points_.vertex;
-  face_.parts.push_back({v, {v[0], v[1], v[2]}});
-  twice_area_ = length(newell_);
-}
-
-void FaceCutter::cut_planar(const ExactVec3& normal) {
-  if (is_zero(newell_)) return without_newell(normal);
-  const PlanePoints plane(points_, newell_, PlanePoints::Projection::kDropAxis);
-  if (!is_convex(plane)) return cut_region(plane);
-  std::vector<std::size_t> all(points_.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-  add_part(plane, all);
-}
-
-// Turns left or goes straight on at every corner, and goes around once: the x direction changes its sign twice.
-bool FaceCutter::is_convex(const PlanePoints& plane) const {
-  const std::size_t n = points_.size();
-  if (points_.ring_count() > 1) return false;
-  int changes = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t j = (i + 1) % n;
-    const std::size_t k = (i + 2) % n;
-    if (plane.orientation(i, j, k) < 0) return false;
-    if (plane.compare(i, j) != plane.compare(j, k)) ++changes;
-  }
-  return changes == 2;
-}
-
-void FaceCutter::cut_region(const PlanePoints& plane) {
-  const PlanarRegion region = planar_region(vertices_, points_, plane, newell_);
-  report(region);
-  for (const auto& part : region.parts) add_part(plane, part);
-  if (!face_.fault && face_.parts.empty()) face_.shape = FaceShape::kZeroArea;  // the holes remove everything
-}
-
-// Planar, with corners not on one line: a tree of edges walked there and back, or two lobes of opposite sense.
-void FaceCutter::without_newell(const ExactVec3& normal) {
-  const PlanePoints plane(points_, normal, PlanePoints::Projection::kDropAxis);
-  const PlanarRegion region = planar_region(vertices_, points_, plane, normal);
-  if (region.fault == RegionFault::kCrossing) return report(region);
-  face_.shape = FaceShape::kZeroArea;
-  if (region.encloses_something) {
-    face_.fault = {"encloses area, but its Newell vector (area times normal) is zero", "it has no front side",
-                   "split it into simple polygons"};
-  }
-}
-
-void FaceCutter::cut_other() {
-  face_.shape = FaceShape::kTriangulated;
-  if (points_.ring_count() > 1) {
-    face_.fault = {"has holes, but its vertices are not exactly in one plane",
-                   "the position of the holes is not defined", "connect the holes to the outer ring, or use triangles"};
-    return;
-  }
-  if (is_zero(newell_)) {
-    face_.fault = {"has area, but its Newell vector (area times normal) is zero", "it has no front side",
-                   "split it into simple polygons"};
-    return;
-  }
-  face_.out_of_plane = out_of_plane(points_, newell_);
-  const PlanePoints plane(points_, newell_, PlanePoints::Projection::kAlongNormal);
-  const auto triangles = clip_ears(plane, points_.vertex);
-  if (const auto crossing = triangles && points_.size() == 4 ? std::nullopt : find_crossing(points_, plane)) {
-    return report_crossing(*crossing);
-  }
-  if (!triangles) {
-    face_.fault = {
-        "is not planar, and its projection along its Newell vector (area times normal) is not a simple polygon",
-        "it cannot be cut into triangles", "split it into simple polygons"};
-    return;
-  }
-  if (leaves_gap(*triangles)) {
-    face_.fault = {
-        "is not planar, and some of its corners coincide when projected along its Newell vector (area times normal)",
-        "triangulated in this projection, it would have a gap", "split it into simple polygons"};
-    return;
-  }
-  for (const TriangleIndices& triangle : *triangles) add_part(plane, triangle);
-}
-
-// True if anything but the ring bounds the triangles in space, not only as seen along the Newell vector.
-bool FaceCutter::leaves_gap(const std::vector<TriangleIndices>& triangles) const {
-  using Position = std::tuple<double, double, double>;
-  std::vector<std::pair<Position, Position>> sides, reversed;
-  const auto place = [&](std::size_t point) {
-    const Vec3& v = vertices_[points_.vertex[point]];
-    return Position{v.x, v.y, v.z};
-  };
-  const auto add = [&](std::size_t from, std::size_t to) {
-    const Position a = place(from), b = place(to);
-    if (a < b) sides.emplace_back(a, b);
-    if (b < a) reversed.emplace_back(b, a);
-  };
-  for (const auto& [a, b, c] : triangles) {
-    add(a, b);
-    add(b, c);
-    add(c, a);
-  }
-  for (std::size_t i = 0; i < points_.size(); ++i) add(next_in_ring(points_, i), i);
-  std::sort(sides.begin(), sides.end());
-  std::sort(reversed.begin(), reversed.end());
-  return sides != reversed;
-}
-
-void FaceCutter::add_part(const PlanePoints& plane, std::span<const std::size_t> corners) {
-  ConvexPart part;
-  for (const std::size_t corner : corners) part.corners.push_back(points_.vertex[corner]);
-  std::size_t third = 2;
-  while (corners.size() > 3 && plane.orientation(corners[0], corners[1], corners[third]) == 0) ++third;
-  part.frame = {part.corners[0], part.corners[1], part.corners[third]};
-  twice_area_ = twice_area_ + length(newell(points_, corners));
-  face_.parts.push_back(std::move(part));
-}
-
-std::string FaceCutter::edge_text(EdgeIndex edge) const {
-  return std::to_string(points_.vertex[edge] + 1) + "-" +
-         std::to_string(points_.vertex[next_in_ring(points_, edge)] + 1);
-}
-
-void FaceCutter::report_crossing(std::pair<EdgeIndex, EdgeIndex> edges) {
-  const bool holes = edges.second >= points_.ring_start[1];
-  face_.fault = {"crosses itself: edge " + edge_text(edges.first) + " and edge " + edge_text(edges.second) +
-                     " (vertex numbers) intersect",
-                 holes ? "a hole must lie inside its face" : "its interior is ambiguous",
-                 "split it into simple polygons"};
-}
-
-void FaceCutter::report(const PlanarRegion& region) {
-  switch (region.fault) {
-    case RegionFault::kNone:
-      return;
-    case RegionFault::kCrossing:
-      return report_crossing(region.edges);
-    case RegionFault::kWinding:
-      face_.fault = {"winds around a part of its interior twice, or in the opposite direction",
-                     "its front side is ambiguous", "split it into simple polygons"};
-      return;
-    case RegionFault::kHoleOutside:
-      face_.fault = {"has a hole that reaches outside its outer ring", "a hole must lie inside its face",
-                     "make it a separate face, or move it"};
-      return;
-  }
-}
 
 }  // namespace
 
@@ -283,7 +271,14 @@ class PositionTree {
  public:
   using Position = std::uint32_t;
 
-  explicit PositionTree(const PlanePoints& plane);
+  PositionTree(const PlanePoints& plane) : plane_(plane) {
+    find_positions();
+    marks_.resize(point_at_.size());
+    leaf_of_.resize(point_at_.size());
+    order_.resize(point_at_.size());
+    std::iota(order_.begin(), order_.end(), 0U);
+    if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()), 0);
+  }
 
   [[nodiscard]] Position position_of(std::size_t point) const { return position_of_[point]; }
   [[nodiscard]] std::size_t position_count() const { return marks_.size(); }
@@ -297,7 +292,31 @@ class PositionTree {
 
   // A marked position in the closed triangle a, b, c (counter-clockwise) other than its corners; of several, one that
   // is about the farthest from the side c-a. Exact.
-  [[nodiscard]] std::optional<Position> find_marked(std::size_t a, std::size_t b, std::size_t c) const;
+  [[nodiscard]] std::optional<Position> find_marked(std::size_t a, std::size_t b, std::size_t c) const {
+    const auto [low_x, high_x] = std::minmax({plane_.x(a), plane_.x(b), plane_.x(c)});
+    const auto [low_y, high_y] = std::minmax({plane_.y(a), plane_.y(b), plane_.y(c)});
+    const Triangle triangle{{a, b, c}, low_x, high_x, low_y, high_y};
+    const auto height = [&](const Node& node) {  // of the box's centre above the side c-a, times a constant
+      return (plane_.x(a) - plane_.x(c)) * (node.low_y + node.high_y) -
+             (plane_.y(a) - plane_.y(c)) * (node.low_x + node.high_x);
+    };
+    std::uint32_t stack[kDepthLimit];
+    int size = 0;
+    if (!nodes_.empty()) stack[size++] = 0;
+    while (size > 0) {
+      const std::uint32_t index = stack[--size];
+      const Node& node = nodes_[index];
+      if (node.marks == 0 || certainly_outside(node, triangle)) continue;
+      if (node.right == 0) {
+        if (const auto found = find_in_leaf(node, triangle)) return found;
+        continue;
+      }
+      const bool right_first = height(nodes_[node.right]) > height(nodes_[index + 1]);
+      stack[size++] = right_first ? index + 1 : node.right;
+      stack[size++] = right_first ? node.right : index + 1;
+    }
+    return std::nullopt;
+  }
 
  private:
   static constexpr std::uint32_t kLeafSize = 4;
@@ -316,14 +335,83 @@ class PositionTree {
     double low_x, high_x, low_y, high_y;
   };
 
-  void find_positions();
-  void build(std::uint32_t first, std::uint32_t last, std::uint32_t parent);
-  void change(Position position, int by);
+  void find_positions() {
+    std::vector<std::size_t> order(plane_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return plane_.compare(a, b) < 0; });
+    position_of_.resize(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      if (i == 0 || plane_.compare(order[i - 1], order[i]) != 0) point_at_.push_back(order[i]);
+      position_of_[order[i]] = static_cast<Position>(point_at_.size() - 1);
+    }
+  }
+
+  void build(std::uint32_t first, std::uint32_t last, std::uint32_t parent) {
+    const auto self = static_cast<std::uint32_t>(nodes_.size());
+    Node node{x(order_[first]), x(order_[first]), y(order_[first]), y(order_[first]), first, last, parent};
+    for (std::uint32_t i = first + 1; i < last; ++i) {
+      node.low_x = std::min(node.low_x, x(order_[i]));
+      node.high_x = std::max(node.high_x, x(order_[i]));
+      node.low_y = std::min(node.low_y, y(order_[i]));
+      node.high_y = std::max(node.high_y, y(order_[i]));
+    }
+    nodes_.push_back(node);
+    if (last - first <= kLeafSize) {
+      for (std::uint32_t i = first; i < last; ++i) leaf_of_[order_[i]] = self;
+      return;
+    }
+    const bool along_x = node.high_x - node.low_x >= node.high_y - node.low_y;
+    const std::uint32_t middle = first + (last - first) / 2;
+    std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last,
+                     [&](Position a, Position b) { return along_x ? x(a) < x(b) : y(a) < y(b); });
+    build(first, middle, self);
+    nodes_[self].right = static_cast<std::uint32_t>(nodes_.size());
+    build(middle, last, self);
+  }
+
+  void change(Position position, int by) {
+    const auto step = static_cast<std::uint32_t>(by);  // subtracting one mark adds 2^32 - 1
+    marks_[position] += step;
+    std::uint32_t node = leaf_of_[position];
+    for (; node != 0; node = nodes_[node].parent) nodes_[node].marks += step;
+    nodes_[0].marks += step;
+  }
+
   [[nodiscard]] double x(Position position) const { return plane_.x(point_at_[position]); }
   [[nodiscard]] double y(Position position) const { return plane_.y(point_at_[position]); }
-  [[nodiscard]] bool certainly_outside(const Node& node, const Triangle& triangle) const;
-  [[nodiscard]] bool holds(const Triangle& triangle, Position position) const;
-  [[nodiscard]] std::optional<Position> find_in_leaf(const Node& leaf, const Triangle& triangle) const;
+
+  // Proved by the bound of PlanePoints::orientation, which also holds for the box's corner farthest to the left of a
+  // side, or by the bounding box.
+  [[nodiscard]] bool certainly_outside(const Node& node, const Triangle& triangle) const {
+    constexpr double kMargin = 4 * PlanePoints::kApproximation;
+    if (node.low_x > triangle.high_x + kMargin || node.high_x < triangle.low_x - kMargin ||
+        node.low_y > triangle.high_y + kMargin || node.high_y < triangle.low_y - kMargin) {
+      return true;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t p = triangle.corners[i], q = triangle.corners[(i + 1) % 3];
+      const double dx = plane_.x(q) - plane_.x(p), dy = plane_.y(q) - plane_.y(p);
+      const double corner_x = dy > 0.0 ? node.low_x : node.high_x;
+      const double corner_y = dx > 0.0 ? node.high_y : node.low_y;
+      if (dx * (corner_y - plane_.y(p)) - dy * (corner_x - plane_.x(p)) < -PlanePoints::kOrientationError) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool holds(const Triangle& triangle, Position position) const {
+    const auto& [a, b, c] = triangle.corners;
+    if (position == position_of_[a] || position == position_of_[b] || position == position_of_[c]) return false;
+    const std::size_t point = point_at_[position];
+    return plane_.orientation(a, b, point) >= 0 && plane_.orientation(b, c, point) >= 0 &&
+           plane_.orientation(c, a, point) >= 0;
+  }
+
+  [[nodiscard]] std::optional<Position> find_in_leaf(const Node& leaf, const Triangle& triangle) const {
+    for (std::uint32_t i = leaf.first; i < leaf.last; ++i) {
+      if (marks_[order_[i]] > 0 && holds(triangle, order_[i])) return order_[i];
+    }
+    return std::nullopt;
+  }
 
   const PlanePoints& plane_;
   std::vector<Position> position_of_;   // of each point
@@ -334,132 +422,115 @@ class PositionTree {
   std::vector<Node> nodes_;
 };
 
-PositionTree::PositionTree(const PlanePoints& plane) : plane_(plane) {
-  find_positions();
-  marks_.resize(point_at_.size());
-  leaf_of_.resize(point_at_.size());
-  order_.resize(point_at_.size());
-  std::iota(order_.begin(), order_.end(), 0U);
-  if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()), 0);
-}
-
-void PositionTree::find_positions() {
-  std::vector<std::size_t> order(plane_.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return plane_.compare(a, b) < 0; });
-  position_of_.resize(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i == 0 || plane_.compare(order[i - 1], order[i]) != 0) point_at_.push_back(order[i]);
-    position_of_[order[i]] = static_cast<Position>(point_at_.size() - 1);
-  }
-}
-
-void PositionTree::build(std::uint32_t first, std::uint32_t last, std::uint32_t parent) {
-  const auto self = static_cast<std::uint32_t>(nodes_.size());
-  Node node{x(order_[first]), x(order_[first]), y(order_[first]), y(order_[first]), first, last, parent};
-  for (std::uint32_t i = first + 1; i < last; ++i) {
-    node.low_x = std::min(node.low_x, x(order_[i]));
-    node.high_x = std::max(node.high_x, x(order_[i]));
-    node.low_y = std::min(node.low_y, y(order_[i]));
-    node.high_y = std::max(node.high_y, y(order_[i]));
-  }
-  nodes_.push_back(node);
-  if (last - first <= kLeafSize) {
-    for (std::uint32_t i = first; i < last; ++i) leaf_of_[order_[i]] = self;
-    return;
-  }
-  const bool along_x = node.high_x - node.low_x >= node.high_y - node.low_y;
-  const std::uint32_t middle = first + (last - first) / 2;
-  std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last,
-                   [&](Position a, Position b) { return along_x ? x(a) < x(b) : y(a) < y(b); });
-  build(first, middle, self);
-  nodes_[self].right = static_cast<std::uint32_t>(nodes_.size());
-  build(middle, last, self);
-}
-
-void PositionTree::change(Position position, int by) {
-  const auto step = static_cast<std::uint32_t>(by);  // subtracting one mark adds 2^32 - 1
-  marks_[position] += step;
-  std::uint32_t node = leaf_of_[position];
-  for (; node != 0; node = nodes_[node].parent) nodes_[node].marks += step;
-  nodes_[0].marks += step;
-}
-
-// Proved by the bound of PlanePoints::orientation, which also holds for the box's corner farthest to the left of a
-// side, or by the bounding box.
-bool PositionTree::certainly_outside(const Node& node, const Triangle& triangle) const {
-  constexpr double kMargin = 4 * PlanePoints::kApproximation;
-  if (node.low_x > triangle.high_x + kMargin || node.high_x < triangle.low_x - kMargin ||
-      node.low_y > triangle.high_y + kMargin || node.high_y < triangle.low_y - kMargin) {
-    return true;
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t p = triangle.corners[i], q = triangle.corners[(i + 1) % 3];
-    const double dx = plane_.x(q) - plane_.x(p), dy = plane_.y(q) - plane_.y(p);
-    const double corner_x = dy > 0.0 ? node.low_x : node.high_x;
-    const double corner_y = dx > 0.0 ? node.high_y : node.low_y;
-    if (dx * (corner_y - plane_.y(p)) - dy * (corner_x - plane_.x(p)) < -PlanePoints::kOrientationError) return true;
-  }
-  return false;
-}
-
-bool PositionTree::holds(const Triangle& triangle, Position position) const {
-  const auto& [a, b, c] = triangle.corners;
-  if (position == position_of_[a] || position == position_of_[b] || position == position_of_[c]) return false;
-  const std::size_t point = point_at_[position];
-  return plane_.orientation(a, b, point) >= 0 && plane_.orientation(b, c, point) >= 0 &&
-         plane_.orientation(c, a, point) >= 0;
-}
-
-std::optional<PositionTree::Position> PositionTree::find_in_leaf(const Node& leaf, const Triangle& triangle) const {
-  for (std::uint32_t i = leaf.first; i < leaf.last; ++i) {
-    if (marks_[order_[i]] > 0 && holds(triangle, order_[i])) return order_[i];
-  }
-  return std::nullopt;
-}
-
-std::optional<PositionTree::Position> PositionTree::find_marked(std::size_t a, std::size_t b, std::size_t c) const {
-  const auto [low_x, high_x] = std::minmax({plane_.x(a), plane_.x(b), plane_.x(c)});
-  const auto [low_y, high_y] = std::minmax({plane_.y(a), plane_.y(b), plane_.y(c)});
-  const Triangle triangle{{a, b, c}, low_x, high_x, low_y, high_y};
-  const auto height = [&](const Node& node) {  // of the box's centre above the side c-a, times a constant
-    return (plane_.x(a) - plane_.x(c)) * (node.low_y + node.high_y) -
-           (plane_.y(a) - plane_.y(c)) * (node.low_x + node.high_x);
-  };
-  std::uint32_t stack[kDepthLimit];
-  int size = 0;
-  if (!nodes_.empty()) stack[size++] = 0;
-  while (size > 0) {
-    const std::uint32_t index = stack[--size];
-    const Node& node = nodes_[index];
-    if (node.marks == 0 || certainly_outside(node, triangle)) continue;
-    if (node.right == 0) {
-      if (const auto found = find_in_leaf(node, triangle)) return found;
-      continue;
-    }
-    const bool right_first = height(nodes_[node.right]) > height(nodes_[index + 1]);
-    stack[size++] = right_first ? index + 1 : node.right;
-    stack[size++] = right_first ? node.right : index + 1;
-  }
-  return std::nullopt;
-}
-
 class EarClipper {
  public:
-  EarClipper(const PlanePoints& plane, std::span<const std::uint32_t> index);
-  std::optional<std::vector<TriangleIndices>> run();
+  EarClipper(const PlanePoints& plane, std::span<const std::uint32_t> index)
+      : plane_(plane),
+        index_(index),
+        present_(index.size(), true),
+        count_(index.size()),
+        blocks_(index.size(), false),
+        tree_(plane),
+        waiting_(tree_.position_count()) {
+    const std::size_t n = index.size();
+    for (std::size_t v = 0; v < n; ++v) {
+      next_.push_back((v + 1) % n);
+      previous_.push_back((v + n - 1) % n);
+    }
+    for (std::size_t v = 0; v < n; ++v) {
+      if (!is_convex(v)) start_blocking(v);
+    }
+    for (std::size_t v = 0; v < n; ++v) examine(v);
+  }
+
+  std::optional<std::vector<TriangleIndices>> run() {
+    std::vector<TriangleIndices> triangles;
+    while (count_ > 2) {
+      if (valid_.empty()) return std::nullopt;
+      triangles.push_back(clip(std::get<3>(*valid_.begin())));
+    }
+    return triangles;
+  }
 
  private:
   using Order = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::size_t>;
 
-  Order order_of(std::size_t tip) const;
-  void examine(std::size_t tip);
-  void refresh(std::size_t vertex);
-  void start_blocking(std::size_t vertex);
-  void stop_blocking(std::size_t vertex);
-  void remove(std::size_t vertex);
-  std::size_t settle(std::size_t vertex);
-  TriangleIndices clip(std::size_t tip);
+  // Two visits of the ring to one vertex are distinguished by the neighbours, so that the start does not matter.
+  Order order_of(std::size_t tip) const {
+    const auto [low, high] = std::minmax(index_[previous_[tip]], index_[next_[tip]]);
+    return {index_[tip], low, high, tip};
+  }
+
+  void examine(std::size_t tip) {
+    if (!is_convex(tip)) return;
+    if (const auto blocker = tree_.find_marked(previous_[tip], tip, next_[tip])) {
+      waiting_[*blocker].push_back(tip);
+    } else {
+      valid_.insert(order_of(tip));
+    }
+  }
+
+  // Must be called when a vertex has new neighbours.
+  void refresh(std::size_t vertex) {
+    if (is_convex(vertex)) {
+      stop_blocking(vertex);
+    } else {
+      start_blocking(vertex);
+    }
+    if (!valid_.contains(order_of(vertex))) examine(vertex);
+  }
+
+  void start_blocking(std::size_t vertex) {
+    if (!blocks_[vertex]) tree_.mark(vertex);
+    blocks_[vertex] = true;
+  }
+
+  void stop_blocking(std::size_t vertex) {
+    if (!blocks_[vertex]) return;
+    blocks_[vertex] = false;
+    if (!tree_.unmark(vertex)) return;
+    for (const std::size_t tip : std::exchange(waiting_[tree_.position_of(vertex)], {})) {
+      if (present_[tip] && !valid_.contains(order_of(tip))) examine(tip);
+    }
+  }
+
+  // The caller must refresh the two neighbours.
+  void remove(std::size_t vertex) {
+    const std::size_t a = previous_[vertex], c = next_[vertex];
+    for (const std::size_t v : {a, vertex, c}) valid_.erase(order_of(v));
+    present_[vertex] = false;
+    --count_;
+    next_[a] = c;
+    previous_[c] = a;
+    stop_blocking(vertex);
+  }
+
+  // Where a ring touches itself at a vertex, using up one of its lobes leaves two sides that coincide: drops the
+  // corner between them and one of the two equal vertices then left side by side, until the sides differ. Returns
+  // the vertex that is left in their place.
+  std::size_t settle(std::size_t vertex) {
+    while (count_ > 2 && same_position(previous_[vertex], next_[vertex])) {
+      const std::size_t a = previous_[vertex], c = next_[vertex];
+      remove(vertex);
+      vertex = index_[a] <= index_[c] ? a : c;
+      remove(vertex == a ? c : a);
+    }
+    return vertex;
+  }
+
+  TriangleIndices clip(std::size_t tip) {
+    const TriangleIndices triangle = {previous_[tip], tip, next_[tip]};
+    remove(tip);
+    for (const std::size_t end : {triangle[0], triangle[2]}) {
+      if (!present_[end]) continue;
+      const std::size_t left = settle(end);
+      refresh(left);
+      if (left == end) continue;
+      refresh(previous_[left]);
+      refresh(next_[left]);
+    }
+    return triangle;
+  }
 
   bool same_position(std::size_t a, std::size_t b) const { return tree_.position_of(a) == tree_.position_of(b); }
   bool is_convex(std::size_t v) const { return plane_.orientation(previous_[v], v, next_[v]) > 0; }
@@ -475,111 +546,6 @@ class EarClipper {
   PositionTree tree_;                              // has marks where they are
   std::vector<std::vector<std::size_t>> waiting_;  // tips blocked from each position
 };
-
-EarClipper::EarClipper(const PlanePoints& plane, std::span<const std::uint32_t> index)
-    : plane_(plane),
-      index_(index),
-      present_(index.size(), true),
-      count_(index.size()),
-      blocks_(index.size(), false),
-      tree_(plane),
-      waiting_(tree_.position_count()) {
-  const std::size_t n = index.size();
-  for (std::size_t v = 0; v < n; ++v) {
-    next_.push_back((v + 1) % n);
-    previous_.push_back((v + n - 1) % n);
-  }
-  for (std::size_t v = 0; v < n; ++v) {
-    if (!is_convex(v)) start_blocking(v);
-  }
-  for (std::size_t v = 0; v < n; ++v) examine(v);
-}
-
-// Two visits of the ring to one vertex are distinguished by the neighbours, so that the start does not matter.
-EarClipper::Order EarClipper::order_of(std::size_t tip) const {
-  const auto [low, high] = std::minmax(index_[previous_[tip]], index_[next_[tip]]);
-  return {index_[tip], low, high, tip};
-}
-
-void EarClipper::examine(std::size_t tip) {
-  if (!is_convex(tip)) return;
-  if (const auto blocker = tree_.find_marked(previous_[tip], tip, next_[tip])) {
-    waiting_[*blocker].push_back(tip);
-  } else {
-    valid_.insert(order_of(tip));
-  }
-}
-
-// Must be called when a vertex has new neighbours.
-void EarClipper::refresh(std::size_t vertex) {
-  if (is_convex(vertex)) {
-    stop_blocking(vertex);
-  } else {
-    start_blocking(vertex);
-  }
-  if (!valid_.contains(order_of(vertex))) examine(vertex);
-}
-
-void EarClipper::start_blocking(std::size_t vertex) {
-  if (!blocks_[vertex]) tree_.mark(vertex);
-  blocks_[vertex] = true;
-}
-
-void EarClipper::stop_blocking(std::size_t vertex) {
-  if (!blocks_[vertex]) return;
-  blocks_[vertex] = false;
-  if (!tree_.unmark(vertex)) return;
-  for (const std::size_t tip : std::exchange(waiting_[tree_.position_of(vertex)], {})) {
-    if (present_[tip] && !valid_.contains(order_of(tip))) examine(tip);
-  }
-}
-
-// The caller must refresh the two neighbours.
-void EarClipper::remove(std::size_t vertex) {
-  const std::size_t a = previous_[vertex], c = next_[vertex];
-  for (const std::size_t v : {a, vertex, c}) valid_.erase(order_of(v));
-  present_[vertex] = false;
-  --count_;
-  next_[a] = c;
-  previous_[c] = a;
-  stop_blocking(vertex);
-}
-
-// Where a ring touches itself at a vertex, using up one of its lobes leaves two sides that coincide: drops the
-// corner between them and one of the two equal vertices then left side by side, until the sides differ. Returns
-// the vertex that is left in their place.
-std::size_t EarClipper::settle(std::size_t vertex) {
-  while (count_ > 2 && same_position(previous_[vertex], next_[vertex])) {
-    const std::size_t a = previous_[vertex], c = next_[vertex];
-    remove(vertex);
-    vertex = index_[a] <= index_[c] ? a : c;
-    remove(vertex == a ? c : a);
-  }
-  return vertex;
-}
-
-TriangleIndices EarClipper::clip(std::size_t tip) {
-  const TriangleIndices triangle = {previous_[tip], tip, next_[tip]};
-  remove(tip);
-  for (const std::size_t end : {triangle[0], triangle[2]}) {
-    if (!present_[end]) continue;
-    const std::size_t left = settle(end);
-    refresh(left);
-    if (left == end) continue;
-    refresh(previous_[left]);
-    refresh(next_[left]);
-  }
-  return triangle;
-}
-
-std::optional<std::vector<TriangleIndices>> EarClipper::run() {
-  std::vector<TriangleIndices> triangles;
-  while (count_ > 2) {
-    if (valid_.empty()) return std::nullopt;
-    triangles.push_back(clip(std::get<3>(*valid_.begin())));
-  }
-  return triangles;
-}
 
 std::optional<std::vector<TriangleIndices>> split_quadrilateral(const PlanePoints& plane,
                                                                 std::span<const std::uint32_t> index) {

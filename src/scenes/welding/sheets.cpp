@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <optional>
 #include <tuple>
-#include <utility>
 
 #include "kernel/numbers.h"
 #include "kernel/vec.h"

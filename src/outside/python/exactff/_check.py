@@ -64,7 +64,6 @@ def truth(scene: Scene, receivers: Receivers, path: Union[str, os.PathLike[str]]
     return TruthSummary(rows, certified, zero, underflow, not_certified, resumed, seconds)
 
 
-
 class Distribution(NamedTuple):
     """Statistics of the magnitudes of errors. A quantile is by nearest rank."""
 

@@ -176,9 +176,7 @@ class Scene:
 
     def texture(self, face: int, uv: int = 0) -> Floats:
         """Texture coordinates of a face, (n, 2): one row for each corner, through all rings; none if it has none."""
-        if uv not in (0, 1):
-            refuse(f"there is no set {uv} of texture coordinates", "a face has at most two", "give 0 or 1")
-        return self._scene.texture(face, uv)
+        return self._scene.texture(face, _set(uv))
 
     def face_name(self, face: int) -> str:
         """``NAME:k``, or ``NAME`` for a patch of one face."""
@@ -342,13 +340,11 @@ class Scene:
     def lightmap(self, width: int, height: int, on: Names = None, *, uv: int = 0) -> Lightmap:
         """Receivers at the points of faces that the centres of texels stand for, by texture coordinates, exactly; as
         ``exactff render --lightmap``. `on`: names of patches or faces; None for all. Raises InputError."""
-        if uv not in (0, 1):
-            refuse(f"there is no set {uv} of texture coordinates", "a face has at most two", "give 0 or 1")
         names = _arrays_names(on)
         if on is not None and not names:
             refuse("on names no patch", "a lightmap shows faces", "name one, or leave it out for all")
         made, texels, *counts = _exactff.ReceiverList.of_lightmap(self._scene, operator.index(width),
-                                                                  operator.index(height), uv, names, on is None)
+                                                                  operator.index(height), _set(uv), names, on is None)
         return Lightmap(Receivers(made, f"{width}x{height} texels"), texels[:, 0], texels[:, 1], *counts)
 
     def read_receivers(self, path: Union[str, os.PathLike[str]]) -> Receivers:
@@ -464,12 +460,7 @@ class Scene:
         :attr:`FormFactor.gradient`, ``vertices=True`` also its derivatives by the vertices of the scene.
         """
         scene = self if transparent is None else self.with_transparent(*_arrays_names(transparent))
-        shape, p, n = _arguments.receivers(point, normal)
-        if shape != ():
-            refuse(f"there are receivers of shape {shape}", "form_factor is for one", "use form_factors")
-        own = scene._own_faces(on, shape, p, n, 1)
-        scene._warn_of_misses(p, n, own)
-        ask = _Again(scene._scene, tuple(p[0].tolist()), tuple(n[0].tolist()), [int(f) for f in own[0] if f >= 0],
+        ask = _Again(scene._scene, *scene._one_receiver(point, normal, on, "form_factor is for one", "use form_factors"),
                      self._source(source), _arguments.measure_tuple(measure, up, normal is None))
         return FormFactor(ask(fraction=fraction, digits=digits, precision_cap=_bits(precision_cap),
                               gradient=gradient, vertices=vertices), ask)
@@ -508,6 +499,15 @@ class Scene:
         if twice:
             refuse(f"the source {twice[0]!r} is named twice", "its light would count twice", "give it once")
         return names
+
+    def _one_receiver(self, point: ArrayLike, normal: Optional[ArrayLike], on: On, why: str,
+                      advice: str) -> tuple[tuple[float, ...], tuple[float, ...], list[int]]:
+        shape, p, n = _arguments.receivers(point, normal)
+        if shape != ():
+            refuse(f"there are receivers of shape {shape}", why, advice)
+        own = self._own_faces(on, shape, p, n, 1)
+        self._warn_of_misses(p, n, own)
+        return tuple(p[0].tolist()), tuple(n[0].tolist()), [int(f) for f in own[0] if f >= 0]
 
     def _own_faces(self, on: On, shape: tuple[int, ...], p: Floats, n: Floats, threads: int) -> Ints:
         """(receivers, k) indices, -1 for none."""
@@ -604,6 +604,12 @@ def _grid(cells: Union[None, int, tuple[int, int]]) -> str:
     if columns_and_rows.shape != (2,) or columns_and_rows.dtype.kind not in "iu":
         refuse(f"grid is {cells!r}", "a grid has so many columns and rows", "for example grid=(32, 24), or grid=32")
     return "x".join(map(str, columns_and_rows.tolist()))
+
+
+def _set(uv: int) -> int:
+    if uv not in (0, 1):
+        refuse(f"there is no set {uv} of texture coordinates", "a face has at most two", "give 0 or 1")
+    return uv
 
 
 def _bits(precision_cap: int) -> int:

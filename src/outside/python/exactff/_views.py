@@ -112,8 +112,7 @@ class ViewFactorMatrix:
         always for a file that the scene was read from, and for other programs if fronts of two patches overlap, since such
         rows exceed 1."""
         check_existing(existing)
-        if self._made is None:
-            refuse("the matrix was copied or pickled", "a copy has the numbers alone", "save the first one")
+        made = self._whole("save the first one")
         extension = os.path.splitext(os.fspath(path))[1].lower()
         names = [name for name, known in _MATRIX_FILES if (known and known == extension if format is None else name == format)]
         if format is None and not names:
@@ -126,7 +125,7 @@ class ViewFactorMatrix:
         beside = _exactff.openfoam_files if names[0] == "openfoam" else ()
         for file in (path, *(os.path.join(os.path.dirname(os.fspath(path)), name) for name in beside)):
             require_free(file, existing, self._read)
-        self._made.write(os.fspath(path), names[0], zone)
+        made.write(os.fspath(path), names[0], zone)
 
     def balanced(self) -> ViewFactorMatrix:
         """The nearest matrix in which every value, also of ``back``, ``open`` and ``buried``, lies in its interval, and
@@ -139,11 +138,10 @@ class ViewFactorMatrix:
         and columns, with `backs` and `sky`. Raises InputError where rows need not add up to 1, with
         ``reasons_against_one``; and where there is no such matrix, with the rows or pairs whose intervals prove it.
         ``save`` then writes these values, and ``.csv`` both."""
-        if self._made is None:
-            refuse("the matrix was copied or pickled", "a copy has the numbers alone", "balance the first one")
+        whole = self._whole("balance the first one")
         if self.sums:
             refuse("the matrix has sums", "their balanced values are not computed", "leave out sums, and add values up")
-        entries, back, free, below, _, made = self._made.balanced()
+        entries, back, free, below, _, made = whole.balanced()
         n = len(self.from_names)
 
         def with_values(row: Optional[tuple[ViewFactor, ...]], values: Floats) -> Optional[tuple[ViewFactor, ...]]:
@@ -162,15 +160,9 @@ class ViewFactorMatrix:
         so those of ``matrix.balanced().exchange()`` have rows that add up to 1, with ``back`` and ``open``, which are black.
         `save` names a CSV, .npz or .jsonl file that is written. Raises InputError for other patches and for a Kd above 1;
         a channel without a bound is a ModellingWarning."""
-        check_existing(existing)
-        if self._made is None:
-            refuse("the matrix was copied or pickled", "a copy has the numbers alone", "use the first one")
-        if save is not None:
-            require_table(save)
-            require_free(save, existing, self._read)
+        made, file = self._whole("use the first one"), self._free_table(save, existing)
         with shown(progress, "exchange factor") as tell:
-            channels, claim, areas = self._made.exchange(_arguments.thread_count(threads),
-                                                         "" if save is None else os.fspath(save), tell)
+            channels, claim, areas = made.exchange(_arguments.thread_count(threads), file, tell)
         n = len(areas)
 
         def square(k: int) -> Floats:
@@ -202,16 +194,23 @@ class ViewFactorMatrix:
         Needs the factors between all patches, with `backs` and `sky`. Values are by the values of the matrix: no heat is made
         if it is balanced. Raises InputError for another matrix; for patches in neither or in both; for a Kd that differs
         between channels or is above 1; where more heat is taken away than arrives; and where there is no bound."""
-        check_existing(existing)
-        if self._made is None:
-            refuse("the matrix was copied or pickled", "a copy has the numbers alone", "use the first one")
-        if save is not None:
-            require_table(save)
-            require_free(save, existing, self._read)
-        t, q, areas, emissivities, rest, claim = self._made.temperatures(dict(known), dict(heats),
-                                                                         "" if save is None else os.fspath(save))
+        made, file = self._whole("use the first one"), self._free_table(save, existing)
+        t, q, areas, emissivities, rest, claim = made.temperatures(dict(known), dict(heats), file)
         return Temperatures(self.from_names, areas, emissivities, t[:, 0], t[:, 1], t[:, 2], q[:, 0], q[:, 1], q[:, 2],
                             rest[0], rest[1], rest[2], claim)
+
+    def _whole(self, advice: str) -> _exactff.MadeMatrix:
+        if self._made is None:
+            refuse("the matrix was copied or pickled", "a copy has the numbers alone", advice)
+        return self._made
+
+    def _free_table(self, save: Optional[Path], existing: str) -> str:
+        check_existing(existing)
+        if save is None:
+            return ""
+        require_table(save)
+        require_free(save, existing, self._read)
+        return os.fspath(save)
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_made": None}
@@ -439,15 +438,10 @@ def view(scene: Scene, at: ArrayLike, normal: Optional[ArrayLike], on: On = None
     """
     if patches not in ("groups", "faces"):
         refuse(f"patches is {patches!r}", "", "choose 'groups' or 'faces'")
-    shape, p, n = _arguments.receivers(at, normal)
-    if shape != ():
-        refuse(f"there are receivers of shape {shape}", "view is for one", "call it for each")
-    own = scene._own_faces(on, shape, p, n, 1)
-    scene._warn_of_misses(p, n, own)
+    receiver = scene._one_receiver(at, normal, on, "view is for one", "call it for each")
     if not 1 <= precision_cap <= _MOST_BITS:
         refuse(f"precision_cap is {precision_cap}", f"it is a number of bits from 1 to {_MOST_BITS}", "leave it out")
-    rows, back, free, buried = _exactff.view(scene._scene, tuple(p[0].tolist()), tuple(n[0].tolist()),
-                                     [int(f) for f in own[0] if f >= 0], patches == "faces", digits, precision_cap,
+    rows, back, free, buried = _exactff.view(scene._scene, *receiver, patches == "faces", digits, precision_cap,
                                      _arguments.measure_tuple(measure, up, normal is None))
 
     def share(row: tuple[float, float, float, int]) -> Share:
