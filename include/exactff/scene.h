@@ -202,8 +202,10 @@ class Scene {
   // lower-case hexadecimal digits.
   [[nodiscard]] std::string hash() const;
 
-  // Of its coordinates. No other value depends on it, nor does hash().
+  // Of its coordinates. Temperatures, and conductors for ESATAN, depend on it; no other value does, nor hash().
   [[nodiscard]] Unit unit() const;
+  // The same scene with this unit stated. No coordinate changes.
+  [[nodiscard]] Scene with_unit(Unit unit) const;
 
   // The files that it was read from: its own and its MTL files. None for a scene that was generated or built.
   [[nodiscard]] std::span<const std::filesystem::path> files() const;

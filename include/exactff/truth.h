@@ -1,10 +1,11 @@
 // Truth files: certified form factors of many receivers, one row per receiver and source. Values of other programs are
 // compared with them (check.h).
 //
-// A truth file is a CSV file: comment lines "# key: value" with everything that its bytes depend on, one line of column
-// names, then the rows, by receiver and for each receiver by source, in order. Its bytes depend on the request alone,
-// not on threads, machines, shards, interruptions or resumptions. While the file is being made, finished rows are kept
-// in the journal FILE.part beside it, even if the program is killed. FILE itself appears when it is complete.
+// A truth file is a CSV file: a head, which is "# " and one line of JSON with everything that its bytes depend on, one
+// line of column names, then the rows, by receiver and for each receiver by source, in order. Its bytes depend on the
+// request alone, not on threads, machines, shards, interruptions or resumptions. While the file is being made, finished
+// rows are kept in the journal FILE.part beside it, even if the program is killed. FILE itself appears when it is
+// complete.
 #pragma once
 
 #include <array>
@@ -51,8 +52,8 @@ struct Request {
   bool unit_normals = false;
   // Adds two columns: u and v of the receiver on its lattice, from 0 to 1. Every receiver must be the cell of a grid.
   bool uv = false;
-  // Adds columns dF_dx,dF_dy,dF_dz,gradient_status: the derivatives by the receiver's point (Gradient::position), and
-  // the worst of their statuses. At a kink the derivatives are empty and the status is "kink". Not for `sky`.
+  // Adds columns dF_dx,dF_dy,dF_dz and dF_dx_status,...: the derivatives by the receiver's point (Gradient::position).
+  // At a kink the derivatives are empty and the status is "kink". Not for `sky`.
   bool gradient = false;
   // Adds columns total_r,total_g,total_b: this quantity from all sources together, taken from their balls and rounded
   // once, as an image shows it (render.h). The value is repeated in the rows of all sources of a receiver.

@@ -132,6 +132,14 @@ def test_points_count_where_cells_use_them():
     assert exactff.Scene.from_mesh(POINTS, [[0, 1, 3]], names="lid").names == ("lid",)
 
 
+def test_arrays_may_have_a_unit():
+    triangle = exactff.Scene([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    assert (triangle.unit, triangle.with_unit("mm").unit) == ("", "mm")
+    assert (triangle.with_unit("mm").vertices == triangle.vertices).all()
+    with pytest.raises(exactff.InputError, match="no unit of length"):
+        triangle.with_unit("mile")
+
+
 def test_objects_of_other_packages_are_taken_by_their_arrays():
     triangles = np.array([[0, 1, 3], [0, 3, 2]])
     trimesh = types.SimpleNamespace(vertices=POINTS, faces=triangles)

@@ -284,6 +284,10 @@ void bind_scene(py::module_& module) {
           [](const SharedScene& s, const Names& names) { return shared(s.scene().with_flipped(s.selections(names))); },
           "names"_a)
       .def(
+          "with_unit",
+          [](const SharedScene& s, const std::string& unit) { return shared(s.scene().with_unit(unit_named(unit))); },
+          "unit"_a)
+      .def(
           "with_transparent",
           [](const SharedScene& s, const Names& names) {
             return shared(s.scene().with_transparent(s.selections(names)));

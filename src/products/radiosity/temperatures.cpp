@@ -366,6 +366,7 @@ table::Table table_of(const Scene& scene, const Temperatures& found, const ViewF
   using table::Strength;
   table::Head head;
   head.set("scene_hash", scene.hash());
+  if (scene.unit() != Unit::kNone) head.set("unit", std::string(name_of(scene.unit())));
   matrix::set_options(head, options);
   table::Rows rows(
       "temperatures", std::move(head),

@@ -1,4 +1,4 @@
-// The columns of a truth file. A new column is a value of Row, which Rows::row sets, and one line in columns.cpp.
+// The columns of a truth file. A new column is a value of Row, which Rows::compute sets, and one line in columns.cpp.
 #pragma once
 
 #include <array>

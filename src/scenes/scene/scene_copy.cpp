@@ -236,6 +236,12 @@ Scene Scene::with_transparent(std::span<const Selection> selections) const {
   return changed;
 }
 
+Scene Scene::with_unit(Unit unit) const {
+  auto copy = copy_of(data());
+  copy->unit = unit;
+  return Scene(std::move(copy));
+}
+
 void Scene::set_warnings_of_glass() {
   std::vector<Problem>& warnings = data_->warnings;
   warnings.erase(warnings.begin(), warnings.begin() + static_cast<std::ptrdiff_t>(data_->warnings_of_glass));

@@ -224,6 +224,11 @@ class Scene:
 
     # --- other scenes ---
 
+    def with_unit(self, unit: str) -> Scene:
+        """The same scene with its unit of length stated: "mm", "cm", "m", "in" or "ft". No coordinate changes;
+        temperatures and conductors for ESATAN depend on it."""
+        return self._changed(lambda _: self._scene.with_unit(unit), [unit])
+
     def with_flipped(self, *names: Union[str, Sequence[str]]) -> Scene:
         """The same scene with these patches or faces turned round: their fronts become their backs. Give names, patterns
         or lists of them; "all" is every patch."""

@@ -228,7 +228,7 @@ class ExchangeFactors:
     """
 
     names: tuple[str, ...]
-    areas: Floats  #: (n,), without buried parts
+    areas: Floats  #: (n,), in m^2, without buried parts
     emissivities: Floats  #: (c, n), 1 - Kd
     value: Floats  #: (c, n, n)
     lower: Floats  #: (c, n, n)
@@ -248,7 +248,7 @@ class Temperatures:
     """Temperatures and heats of patches, with bounds as strong as ``claim``. Made by :meth:`ViewFactorMatrix.temperatures`."""
 
     names: tuple[str, ...]
-    areas: Floats  #: (n,), without buried parts
+    areas: Floats  #: (n,), in m^2, without buried parts
     emissivities: Floats  #: (n,), 1 - Kd
     value: Floats  #: (n,), temperatures in K
     lower: Floats  #: (n,)
