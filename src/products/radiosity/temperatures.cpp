@@ -132,13 +132,13 @@ Temperatures temperatures(const Scene& scene, const matrix::Matrix& given, const
   }
   const auto bounded = [](const ViewFactor& f) { return BoundedValue{f.value, f.lower, f.upper}; };
   const double square_metres = metres(scene.unit()) * metres(scene.unit());
-  constexpr double kRoundedAreas = matrix::kRoundedAreas + 0x1p-50;  // with the unit and its square
+  constexpr double kRounded = matrix::kRoundedAreas + 0x1p-50;  // with the unit and its square
   std::vector<BoundedValue> areas, eps, from_rest, black, given_flux, positive, negative;
   bool any_negative = false;
   for (std::size_t i = 0; i < n; ++i) {
     const Known& known = conditions.patches[i];
     const double area = matrix.factors.at(i, 0).area_from * square_metres, rho = system.reflectances[i];
-    areas.push_back(widened(area, kRoundedAreas));
+    areas.push_back(widened(area, kRounded));
     eps.push_back(widened(1.0 - rho, 0x1p-52));
     result.areas.push_back(area);
     result.emissivities.push_back(1.0 - rho);
@@ -147,8 +147,8 @@ Temperatures temperatures(const Scene& scene, const matrix::Matrix& given, const
     };
     from_rest.push_back(arrives(matrix.back[i], conditions.back) + arrives(matrix.open[i], conditions.open));
     black.push_back(known.temperature ? black_emission(*known.temperature) : exact(0.0));
-    given_flux.push_back(
-        known.heat && area > 0.0 && *known.heat != 0.0 ? widened(*known.heat / area, 2.0 * kRoundedAreas) : exact(0.0));
+    given_flux.push_back(known.heat && area > 0.0 && *known.heat != 0.0 ? widened(*known.heat / area, 2.0 * kRounded)
+                                                                        : exact(0.0));
     if (known.heat) system.reflectances[i] = 1.0;
     const BoundedValue flux = given_flux.back(), none = exact(0.0);
     positive.push_back(product(from_rest.back(), exact(system.reflectances[i])) +
