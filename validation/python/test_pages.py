@@ -174,7 +174,7 @@ def test_a_page(page, scratch):
     assert len(text.encode()) <= LARGEST_PAGE
     blocks = blocks_of(text)
     prose = re.sub(r"^```.*?^```\n", "", text, flags=re.M | re.S)
-    assert "```" not in prose and not re.search(r"^    (\$ |\S*exactff )", prose, re.M), "a command that nobody runs"
+    assert "```" not in prose and not re.search(r"^    (\$ |\S*exactff )", prose, re.M), "a command that is not run"
     require_links(page, prose)
     require_known_flags_in_words(prose)
     names = {"__name__": "page"}

@@ -93,6 +93,11 @@ const table::Fields<Entry>& columns_with_balanced() {
   return all;
 }
 
+void set_scene(table::Head& head, const Scene& scene) {
+  head.set("scene_hash", scene.hash());
+  if (scene.unit() != Unit::kNone) head.set("unit", std::string(name_of(scene.unit())));
+}
+
 void set_options(table::Head& head, const ViewFactorOptions& options) {
   head.set("accuracy", options.accuracy);
   head.set("budget", std::uint64_t{options.budget});
@@ -117,8 +122,7 @@ table::Head head_of(const Scene& scene, std::span<const Selection> from, std::sp
   add(patches, from);
   add(patches, to);
   table::Head head;
-  head.set("scene_hash", scene.hash());
-  if (scene.unit() != Unit::kNone) head.set("unit", std::string(name_of(scene.unit())));
+  set_scene(head, scene);
   set_options(head, options);
   head.set("from_patches", std::uint64_t{from.size()});
   head.set("to_patches", std::uint64_t{to.size()});

@@ -43,6 +43,8 @@ struct Surroundings {
 // Everything that the entries depend on.
 [[nodiscard]] table::Head head_of(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
                                   const ViewFactorOptions& options, Surroundings surroundings);
+// The scene's hash, and its unit if it has one.
+void set_scene(table::Head& head, const Scene& scene);
 // The options of view factors, in the head of any table that depends on them.
 void set_options(table::Head& head, const ViewFactorOptions& options);
 

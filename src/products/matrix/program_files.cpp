@@ -231,9 +231,10 @@ Texts esatan(const Square& all) {
   };
   for (const Selection& patch : all.patches) name(all.scene->name_of(patch));
   for (const auto& [rest, values] : all.rest) name(std::string(rest));
+  const double square_metres = metres(all.scene->unit()) * metres(all.scene->unit());
   const auto add = [&](std::size_t i, std::size_t j, double conductor) {
     if (conductor <= 0.0) return;
-    conductor *= metres(all.scene->unit()) * metres(all.scene->unit());
+    conductor *= square_metres;
     text += "GR(" + std::to_string(i) + ", " + std::to_string(j) + ") = " + text::shortest(conductor) + ";\n";
   };
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -98,8 +98,7 @@ table::Fields<SolutionFile::Row> columns(bool variation) {
 table::Table table_of(const Scene& scene, const Solution& solution, const ViewFactorOptions& options,
                       const Origin& origin) {
   table::Head head;
-  head.set("scene_hash", scene.hash());
-  if (scene.unit() != Unit::kNone) head.set("unit", std::string(name_of(scene.unit())));
+  matrix::set_scene(head, scene);
   if (origin.divided) head.set("divided", *origin.divided);
   if (!origin.two_sided.empty()) head.set("two_sided", origin.two_sided);
   matrix::set_options(head, options);

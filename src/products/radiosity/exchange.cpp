@@ -243,8 +243,7 @@ matrix::Square square_of(const matrix::ProgramFormat& format, const Scene& scene
 table::Table table_of(const Scene& scene, const Exchange& exchange, const ViewFactorOptions& options) {
   using table::Strength;
   table::Head head;
-  head.set("scene_hash", scene.hash());
-  if (scene.unit() != Unit::kNone) head.set("unit", std::string(name_of(scene.unit())));
+  matrix::set_scene(head, scene);
   matrix::set_options(head, options);
   table::Rows rows(
       "exchange", std::move(head),

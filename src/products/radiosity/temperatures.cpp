@@ -365,8 +365,7 @@ ThermalConditions read_conditions(const Scene& scene, const std::filesystem::pat
 table::Table table_of(const Scene& scene, const Temperatures& found, const ViewFactorOptions& options) {
   using table::Strength;
   table::Head head;
-  head.set("scene_hash", scene.hash());
-  if (scene.unit() != Unit::kNone) head.set("unit", std::string(name_of(scene.unit())));
+  matrix::set_scene(head, scene);
   matrix::set_options(head, options);
   table::Rows rows(
       "temperatures", std::move(head),

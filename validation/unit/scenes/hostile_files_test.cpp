@@ -1,4 +1,4 @@
-// Files, names and polygons that nobody means well are read, or refused with their place.
+// Hostile files, names and polygons are read, or refused with their place.
 #include <sys/stat.h>
 
 #include <cstdio>
