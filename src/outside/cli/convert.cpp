@@ -19,6 +19,7 @@
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
+#include "text/text_lines.h"
 
 namespace exactff::cli {
 namespace {

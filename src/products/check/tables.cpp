@@ -12,6 +12,7 @@
 #include "kernel/float_environment.h"
 #include "matrix/columns.h"
 #include "table/csv.h"
+#include "text/escape.h"
 #include "text/names.h"
 #include "text/refuse.h"
 

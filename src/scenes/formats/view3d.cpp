@@ -23,6 +23,7 @@
 #include "formats/mesh_input.h"
 #include "formats/writers.h"
 #include "kernel/numbers.h"
+#include "text/names.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 
