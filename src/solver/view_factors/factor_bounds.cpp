@@ -1,11 +1,9 @@
 #include "view_factors/factor_bounds.h"
 
 #include <algorithm>
-#include <map>
 #include <numbers>
 
-#include "kernel/poll.h"
-#include "view_factors/point_factors.h"
+#include "view_factors/strata.h"
 #include "view_factors/prepared_patch.h"
 
 namespace exactff::view_factors {
@@ -111,117 +109,6 @@ double UnhiddenBound::on(std::span<const Vec3> corners) const {
   return open_ ? std::min(bound, open_->on(corners)) : bound;
 }
 
-// --- Slope bound ---
-
-SlopeBound::SlopeBound(const Sight& sight) : of_occluders_(cut(edges_of_occluders(sight))) {
-  std::vector<Segment> edges;
-  for (const Edge& edge : sight.source) {
-    source_.push_back(sight.points[edge.from].at);
-    edges.push_back(segment_of(sight, edge));
-  }
-  of_source_ = cut(edges);
-}
-
-SlopeBound::Segment SlopeBound::segment_of(const Sight& sight, const Edge& edge) {
-  const Side receiver = Side::of(sight.receiver);
-  const Vec3 &a = sight.points[edge.from].at, &b = sight.points[edge.to].at;
-  const double height = std::max({receiver.height(a), receiver.height(b), 0.0}) + kAside;
-  return {.a = a, .b = b, .height = height, .one = {}, .other = {}};
-}
-
-// Each once, with the planes of two occluders that share it.
-std::vector<SlopeBound::Segment> SlopeBound::edges_of_occluders(const Sight& sight) {
-  struct Met {
-    std::size_t segment, times;
-    PointId from;
-    const Plane* plane;
-  };
-  std::vector<Segment> segments;
-  std::map<std::pair<PointId, PointId>, Met> met;
-  for (const Occluder& occluder : sight.occluders) {
-    for (const Edge& edge : occluder.ring) {
-      const auto [place, is_new] =
-          met.try_emplace(std::minmax(edge.from, edge.to), Met{segments.size(), 0, edge.from, occluder.plane});
-      Met& before = place->second;
-      ++before.times;
-      if (is_new) {
-        segments.push_back(segment_of(sight, edge));
-        continue;
-      }
-      Segment& segment = segments[before.segment];
-      segment.is_between = before.times == 2 && edge.from != before.from;
-      segment.one = Side::of(*before.plane);
-      segment.other = Side::of(*occluder.plane);
-    }
-  }
-  return segments;
-}
-
-// Into pieces of at most kLongest.
-std::vector<SlopeBound::Segment> SlopeBound::cut(const std::vector<Segment>& segments) {
-  std::vector<Segment> pieces;
-  for (const Segment& whole : segments) {
-    const Vec3 along = kernel::difference(whole.b, whole.a);
-    const double count = std::max(1.0, std::ceil(kernel::length(along) / kLongest));
-    for (double i = 0.0; i < count; i += 1.0) {
-      pieces.push_back(whole);
-      if (i > 0.0) pieces.back().a = pieces[pieces.size() - 2].b;
-      if (i + 1.0 < count) pieces.back().b = kernel::along(whole.a, along, (i + 1.0) / count);
-    }
-  }
-  return pieces;
-}
-
-bool SlopeBound::is_hidden(const Segment& segment, const Vec3& centre, double radius) {
-  if (!segment.is_between) return false;
-  const double one = segment.one.height(centre), other = segment.other.height(centre);
-  return std::min(std::abs(one), std::abs(other)) > radius + kAside && (one > 0.0) == (other > 0.0);
-}
-
-// Through the point and the sides of the source, positive beyond it.
-std::vector<SlopeBound::Beside> SlopeBound::planes_beside(const Vec3& centre) const {
-  Vec3 middle;
-  for (const Vec3& corner : source_) middle = kernel::along(middle, corner, 1.0 / static_cast<double>(source_.size()));
-  std::vector<Beside> planes;
-  for (std::size_t i = 0; i < source_.size(); ++i) {
-    const Vec3 p = kernel::difference(source_[i], centre),
-               q = kernel::difference(source_[(i + 1) % source_.size()], centre), normal = kernel::cross(p, q);
-    const double size = kernel::length(normal);
-    if (!(size > kThin * kernel::length(p) * kernel::length(q))) continue;
-    Side plane{kernel::scaled(normal, 1.0 / size), -kernel::dot(normal, centre) / size};
-    if (plane.height(middle) > 0.0) plane = {kernel::scaled(plane.normal, -1.0), -plane.offset};
-    double highest = 0.0;
-    for (const Vec3& corner : source_) highest = std::max(highest, plane.height(corner));
-    planes.push_back({plane, highest});
-  }
-  return planes;
-}
-
-double SlopeBound::slope(const Segment& piece, const Vec3& centre, double radius) {
-  const double nearest = distance_to_segment(centre, piece.a, piece.b) - radius - kAside;
-  if (!(nearest > kLeastDistance)) return HUGE_VAL;
-  const Vec3 p = kernel::difference(piece.a, centre), q = kernel::difference(piece.b, centre);
-  const double to_a = kernel::length(p) - radius - kAside, to_b = kernel::length(q) - radius - kAside;
-  const double angle = std::atan2(kernel::length(kernel::cross(p, q)), kernel::dot(p, q)) +
-                       (radius + kAside) * (1.0 / to_a + 1.0 / to_b);
-  return std::min(std::numbers::pi, angle) * std::min(1.0, piece.height / nearest) / nearest;
-}
-
-double SlopeBound::about(const Vec3& centre, double radius, double most) const {
-  const double largest = most * std::numbers::pi;
-  double sum = 0.0;
-  for (const Segment& piece : of_source_) sum += slope(piece, centre, radius);
-  const std::vector<Beside> planes = planes_beside(centre);
-  for (const Segment& piece : of_occluders_) {
-    if (!(sum < largest)) return HUGE_VAL;
-    const bool is_beyond = std::ranges::any_of(planes, [&](const Beside& beside) {
-      return std::min(beside.plane.height(piece.a), beside.plane.height(piece.b)) > beside.highest + radius + kAside;
-    });
-    if (!is_beyond && !is_hidden(piece, centre, radius)) sum += slope(piece, centre, radius);
-  }
-  return sum < largest ? sum / std::numbers::pi * kOverRoundings : HUGE_VAL;
-}
-
 // --- Patch bounds ---
 
 namespace {
@@ -240,84 +127,40 @@ bool reach_before_each_other(const ExactScene& scene, const Part& one, const Par
 
 }  // namespace
 
-PatchBounds::PatchBounds(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from,
-                         const PreparedPatch& to)
-    : scene_(scene), seen_(seen), from_(from), to_(to), parts_(from.parts.size()) {}
+PatchBounds::PatchBounds(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to)
+    : scene_(scene), from_(from), to_(to), parts_(from.parts.size()) {}
 
-Span PatchBounds::on(std::size_t part, const Part& fragment, const Tile& tile, bool with_change) {
-  const OfPart& bounds = with_change ? with_slopes(part) : of(part);
-  Span span{.range = range_on(bounds, corners_of(fragment, tile))};
-  if (!with_change) return span;
-  const Reach reach = reach_of(fragment, tile);
-  const double useful = span.range / kDraws;
-  span.change = sum_of(bounds, [&](const SlopeBound& slope) { return slope.change_on(reach, useful); });
-  span.change += 2.0 * kRoundedPoints;
-  return span;
-}
-
-Span PatchBounds::about(std::size_t part, const Vec3& point) {
-  const OfPart& bounds = with_slopes(part);
-  return {range_on(bounds, {&point, 1}),
-          sum_of(bounds, [&](const SlopeBound& slope) { return slope.about(point, 0.0); })};
-}
-
-PatchBounds::OfPart& PatchBounds::of(std::size_t part) {
-  std::optional<OfPart>& of = parts_[part];
-  if (of) return *of;
-  of.emplace();
+const std::vector<UnhiddenBound>& PatchBounds::of(std::size_t part) {
+  std::optional<std::vector<UnhiddenBound>>& bounds = parts_[part];
+  if (bounds) return *bounds;
+  bounds.emplace();
   const Part& receiver = from_.parts[part];
-  const Plane& plane = plane_of(scene_, receiver);
-  if (to_.parts.size() <= kMostSources) {
-    of->knows_unhidden = true;
-    for (const Part& source : to_.parts) {
-      if (!reach_before_each_other(scene_, receiver, source)) continue;
-      of->unhidden.emplace_back(positions_of(source.corners), plane_of(scene_, source), plane);
-    }
+  for (const Part& source : to_.parts) {
+    if (reach_before_each_other(scene_, receiver, source))
+      bounds->emplace_back(positions_of(source.corners), plane_of(scene_, source), plane_of(scene_, receiver));
   }
-  return *of;
+  return *bounds;
 }
 
-PatchBounds::OfPart& PatchBounds::with_slopes(std::size_t part) {
-  OfPart& of = this->of(part);
-  if (!std::exchange(of.slopes_asked, true)) add_slopes(part, of);
-  return of;
-}
-
-void PatchBounds::add_slopes(std::size_t part, OfPart& of) {
-  const Part& receiver = from_.parts[part];
-  const std::span<const std::uint32_t> occluders = from_.seen.lists(seen_, from_.parts)[part].occluders;
-  const std::size_t sources = to_.surrounds() ? 1 : to_.parts.size();
-  for (std::size_t s = 0; s < sources; ++s) {
-    if (pieces_ > SlopeBound::kMostPieces) return of.slopes.clear();
-    kernel::poll();
-    const std::optional<Sight> sight = to_.surrounds() ? sight_of_open(scene_, occluders, receiver)
-                                                       : sight_of(scene_, occluders, receiver, to_.parts[s]);
-    if (!sight) continue;
-    of.slopes.emplace_back(*sight);
-    pieces_ += of.slopes.back().pieces();
-  }
-  of.has_slopes = true;
-}
-
-double PatchBounds::range_on(const OfPart& of, std::span<const Vec3> corners) const {
-  if (!of.knows_unhidden) return 1.0;
+double PatchBounds::on(std::size_t part, std::span<const Vec3> corners) {
+  if (to_.parts.size() > kMostSources) return 1.0;
   double sum = 0.0;
-  for (const UnhiddenBound& bound : of.unhidden) {
+  for (const UnhiddenBound& bound : of(part)) {
     sum += bound.on(corners);
     if (sum >= 1.0) return 1.0;
   }
   return std::min(1.0, sum * kSum);
 }
 
-template <class Slope>
-double PatchBounds::sum_of(const OfPart& of, const Slope& slope) {
-  if (!of.has_slopes) return HUGE_VAL;
+double PatchBounds::mean() {
+  const Strata strata = strata_of(from_.parts, kFewestStrata);
   double sum = 0.0;
-  for (const SlopeBound& bound : of.slopes) {
-    sum += slope(bound);
-    if (sum == HUGE_VAL) break;
+  for (const Stratum& stratum : strata.strata) {
+    const Tile& tile = strata.tiles[stratum.begin];
+    const Vec3 middle = sides_of(from_.parts[tile.part], tile).at(middle_of(tile));
+    sum += stratum.area / strata.area * on(tile.part, {&middle, 1});
   }
-  return sum * kSum;
+  return std::min(1.0, sum);
 }
 
 }  // namespace exactff::view_factors

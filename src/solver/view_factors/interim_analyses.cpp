@@ -163,13 +163,8 @@ namespace {
 
 constexpr std::size_t kPointsOfStratum = kDraws;
 static_assert(kPointsOfFirstAnalysis >= kPointsOfStratum * kFewestStrata);
-constexpr double kOfExpected = 0.95;     // of a width: what is expected is a little less
-constexpr double kNarrower = 0.1;        // than the analysis before
-constexpr double kLeastOfWidths = 0.75;  // of the width that is expected if the function is the same in every stratum
-constexpr double kOffSquare = 0.65;      // of what a stratum adds to it, less when the stratum is split
-constexpr double kCaution = 1.7;         // so much more is expected than predicted
-constexpr double kFirstSquare = 8.0;     // what the first analysis expects, in squares of r
-constexpr double kOfDraws = 0x1p-31;     // the mean of a control variate is that at the middle of its tile, within less
+constexpr double kNarrower = 0.1;     // than the analysis before
+constexpr double kOfDraws = 0x1p-31;  // the mean of a control variate is that at the middle of its tile, within less
 
 constexpr double kFarthestShare = 2.0 / 3.0;  // of a side, from the middle of a tile to its corners, at most
 
@@ -179,7 +174,7 @@ double share_of(double risk, std::size_t analysis) { return risk / static_cast<d
 
 // From one stratum; that from several is as many times smaller.
 double width_of_one(double range, double risk) {
-  return kLeastOfWidths * 2.0 * StratifiedMean().error(range / kDraws, share_of(risk, 1));
+  return 2.0 * StratifiedMean().error(range / kDraws, share_of(risk, 1));
 }
 
 }  // namespace
@@ -204,8 +199,7 @@ InterimAnalyses::InterimAnalyses(SampledFunction& function, const Units& units, 
       units_(units),
       risk_(risk),
       of_shares_(error_of_shares(function.parts(), units)),
-      strata_(function.parts(), first / kPointsOfStratum,
-              [this](const Tile& tile, bool is_alone) { return function_.span(tile, is_alone); }),
+      strata_(function.parts(), first / kPointsOfStratum, [this](const Tile& tile) { return function_.range(tile); }),
       planes_(function.parts()),
       number_(before) {}
 
@@ -217,26 +211,17 @@ double InterimAnalyses::expected_error(double r, double square) const {
   return StratifiedMean{.expected = square, .square = square}.error(r, risk_of(number_ + 1));
 }
 
-// To split a stratum for its square, rather than for its term: the terms are about equal, so they fall as their number
-// grows.
-bool InterimAnalyses::prefers_square() const {
-  const double r = strata_.largest_term(), square = expected_square();
-  const double less = square - kCaution * kOffSquare * strata_.largest_square();
-  return expected_error(r, std::max(0.0, less)) <
-         expected_error(r * (1.0 - 1.0 / static_cast<double>(strata_.strata().strata.size())), square);
-}
-
 // False if all points might then be more, or the strata are too small.
 bool InterimAnalyses::split_within(std::size_t points) {
   kernel::poll();
   if (points_after_next() + kPointsOfSplit > points) return false;
-  return prefers_square() ? strata_.split_largest_square() : strata_.split_largest_term();
+  return strata_.split_largest_term();
 }
 
 bool InterimAnalyses::prepare(double width, std::uint64_t effort, std::size_t points) {
   // More points rarely help where the function is not known.
   if (!(width > last_.most.value - last_.least.value)) return false;
-  while (expected_width() > kOfExpected * width) {
+  while (expected_width() > width) {
     if (effort_after_next() > effort || !split_within(points)) return false;
   }
   return effort_after_next() <= effort && points_after_next() <= points;
@@ -250,14 +235,14 @@ bool InterimAnalyses::prepare_for_all(std::size_t points) {
 
 // Of the next analysis, from what is proved of the function and from the last analysis.
 double InterimAnalyses::expected_width() const {
-  const double error = expected_error(strata_.largest_term(), expected_square());
+  const double error = expected_error(strata_.largest_term(), strata_.sum_of_squares());
   return std::min(1.0, last_.most.value + error) - std::max(0.0, last_.least.value - error);
 }
 
 InterimAnalyses::Mean InterimAnalyses::analyse() {
   Last next;
   next.strata = strata_.strata().strata.size();
-  next.least.expected = next.most.expected = expected_square();
+  next.least.expected = next.most.expected = strata_.sum_of_squares();
   const double r = strata_.largest_term();
   for (std::size_t s = 0; s < next.strata; ++s) {
     kernel::poll();
@@ -271,12 +256,6 @@ InterimAnalyses::Mean InterimAnalyses::analyse() {
   const auto error = [&](const StratifiedMean& mean) { return mean.error(r, risk_of(number_)); };
   const double lower = last_.least.value - error(last_.least), upper = last_.most.value + error(last_.most);
   return {0.5 * (lower + upper), 0.5 * (upper - lower) + of_shares_ + kRoundedPoints + kOfDraws};
-}
-
-// Of the next analysis, from the last one.
-double InterimAnalyses::expected_square() const {
-  if (points_ == 0) return kFirstSquare * strata_.largest_term() * strata_.largest_term();
-  return kCaution * strata_.sum_of_squares();
 }
 
 // A linear function on a tile, by shares of its sides.
@@ -315,39 +294,13 @@ std::optional<double> InterimAnalyses::number_at(const Tile& tile, const Place& 
   return number;
 }
 
+// Control variates lie within the range. Where a stratum has several tiles, they are the same on all of these. Numbers
+// are rounded, and clamped to what is proved.
 void InterimAnalyses::add(std::size_t stratum, Last& analysis) {
+  const Strata& strata = strata_.strata();
+  const Stratum& whole = strata.strata[stratum];
+  const double range = strata_.range(stratum), share = whole.area / strata.area / kDraws;
   const double before = analysis.most.square;
-  strata_.is_by_middle(stratum) ? add_by_middle(stratum, analysis) : add_by_draws(stratum, analysis);
-  strata_.set_square(stratum, analysis.most.square - before);
-}
-
-// The control variate is what the function is at the middle, and what has been seen nearby says how it changes from
-// there. If it is not known at the middle, the least that it may be adds nothing. Numbers are rounded, and clamped to
-// what is proved.
-void InterimAnalyses::add_by_middle(std::size_t stratum, Last& analysis) {
-  const Strata& strata = strata_.strata();
-  const Stratum& whole = strata.strata[stratum];
-  const Tile& tile = strata.tiles[whole.begin];
-  const double share = whole.area / strata.area;
-  const auto [range, change] = strata_.span(stratum);
-  const std::optional<double> at_middle = number_at(tile, middle_of(tile));
-  if (!at_middle) return analysis.most.add(range, range, range, share);
-  ControlVariate control = control_on(tile);
-  control.value = *at_middle;
-  control.flatten((kOverChange - 1.0) * change);
-  Draws draws(number_, stratum, 0);
-  const Place place = draw_place(tile, draws);
-  const double lowest = *at_middle - change, highest = *at_middle + change;
-  const std::optional<double> number = number_at(tile, place);
-  analysis.least.add(std::clamp(number.value_or(lowest), lowest, highest), control.at(place), control.value, share);
-  analysis.most.add(std::clamp(number.value_or(highest), lowest, highest), control.at(place), control.value, share);
-}
-
-// Control variates lie within the range. Where a stratum has several tiles, they are the same on all of these.
-void InterimAnalyses::add_by_draws(std::size_t stratum, Last& analysis) {
-  const Strata& strata = strata_.strata();
-  const Stratum& whole = strata.strata[stratum];
-  const double range = strata_.span(stratum).range, share = whole.area / strata.area / kDraws;
   const bool is_single = whole.end == whole.begin + 1;
   for (std::size_t d = 0; d < kDraws; ++d) {
     Draws draws(number_, stratum, d);
@@ -360,6 +313,7 @@ void InterimAnalyses::add_by_draws(std::size_t stratum, Last& analysis) {
     analysis.least.add(std::clamp(number.value_or(0.0), 0.0, range), control.at(place), control.value, share);
     analysis.most.add(std::clamp(number.value_or(range), 0.0, range), control.at(place), control.value, share);
   }
+  strata_.set_square(stratum, analysis.most.square - before);
 }
 
 }  // namespace exactff::view_factors

@@ -1,11 +1,9 @@
 // Interim analyses of a function of which only bounds are known: means over convex parts, from random points.
 //
-// The parts are cut into strata. In each, two independent points are drawn, or the function is asked at the middle and
-// at one random point. strata.h has the points and the interval, which assumes nothing of the function
-// but what is proved: its range and, where that tells more, how far it is at most from what it is at the middle. Strata
-// are split where these, times their area, are the largest (strata.h), or where numbers were far from their
-// control variates. Control variates are planes through what all points before have shown nearby: where the function
-// is smooth, little is left for chance.
+// The parts are cut into strata. In each, two independent points are drawn. strata.h has the points and the interval,
+// which assumes nothing of the function but its range, which is proved. The stratum where this, times its area, is the
+// largest is split. Control variates are planes through what all points before have shown nearby: where the function is
+// smooth, little is left for chance.
 //
 // Each analysis has points of its own, for an interval of a tenth of the width of the last one or, where the points
 // were not enough, of the same width again; how many are needed is predicted from the ranges and from the last
@@ -90,9 +88,8 @@ class SampledFunction {
   SampledFunction& operator=(const SampledFunction&) = delete;
 
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
-  // What is proved of it on the tile; the range is at most 1. The change may be left out if the tile is not alone in
-  // its stratum.
-  [[nodiscard]] virtual Span span(const Tile& tile, bool is_alone) = 0;
+  // On the tile, it is proved to lie between 0 and this, which is at most 1.
+  [[nodiscard]] virtual double range(const Tile& tile) = 0;
   // At a point of a part. Nothing where it is not known.
   [[nodiscard]] virtual std::optional<double> at(const Point& point, std::size_t part) = 0;
   // Of all points so far, as of Pair::effort.
@@ -146,15 +143,11 @@ class InterimAnalyses {
   [[nodiscard]] std::size_t points_after_next() const { return points_ + points_of_next(); }
   [[nodiscard]] std::uint64_t effort_after_next() const { return effort_of_point_ * points_after_next(); }
   bool split_within(std::size_t points);
-  [[nodiscard]] bool prefers_square() const;
   [[nodiscard]] double expected_error(double r, double square) const;
   [[nodiscard]] double risk_of(std::size_t analysis) const;
-  [[nodiscard]] double expected_square() const;
   struct ControlVariate;
   [[nodiscard]] ControlVariate control_on(const Tile& tile) const;
   void add(std::size_t stratum, Last& analysis);
-  void add_by_middle(std::size_t stratum, Last& analysis);
-  void add_by_draws(std::size_t stratum, Last& analysis);
   [[nodiscard]] std::optional<double> number_at(const Tile& tile, const Place& place);
 
   SampledFunction& function_;

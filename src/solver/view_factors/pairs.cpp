@@ -86,12 +86,12 @@ bool has_better_points(const PreparedPatch& one, const PreparedPatch& other) {
 
 class PointSearch {
  public:
-  PointSearch(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from, const PreparedPatch& to,
+  PointSearch(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to,
               const ViewFactorOptions& options)
       : from_(from),
         to_(to),
         turned_(is_symmetric(to, options) && has_better_points(to, from)),
-        mean_(scene, seen, turned_ ? to : from, turned_ ? from : to, kPointsOfBudget * options.budget,
+        mean_(scene, turned_ ? to : from, turned_ ? from : to, kPointsOfBudget * options.budget,
               (turned_ ? to : from).unit_area / counted_area(from, to)) {}
 
   [[nodiscard]] const SampledMean& mean() const { return mean_; }
@@ -131,7 +131,6 @@ class Search {
   Search(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from, const PreparedPatch& to,
          const ViewFactorOptions& options, PairMemory& memory)
       : scene_(scene),
-        seen_(seen),
         from_(from),
         to_(to),
         options_(options),
@@ -194,7 +193,7 @@ class Search {
   }
 
   void sample_patch(bool cells_left) {
-    if (!points_) points_.emplace(scene_, seen_, from_, to_, options_);
+    if (!points_) points_.emplace(scene_, from_, to_, options_);
     const SampledMean& mean = points_->mean();
     const std::uint64_t effort = cells_left ? effort_for_patch() : kAnyEffort;
     // At the end, analyses that were left out because they could not be accurate.
@@ -232,7 +231,6 @@ class Search {
   }
 
   const ExactScene& scene_;
-  const SeenParts& seen_;
   const PreparedPatch& from_;
   const PreparedPatch& to_;
   const ViewFactorOptions& options_;
@@ -386,15 +384,7 @@ bool Pairs::may_see(std::size_t row, std::size_t column) const {
 double Pairs::unhidden(std::size_t row, std::size_t column) const {
   const PreparedPatch &from = *patches_->rows[row], &to = *patches_->columns[column];
   if (from.parts.empty()) return 0.0;
-  PatchBounds bounds(patches_->scene, patches_->seen, from, to);
-  const Strata strata = strata_of(from.parts, kFewestStrata);
-  double sum = 0.0;
-  for (const Stratum& stratum : strata.strata) {
-    const Tile& tile = strata.tiles[stratum.begin];
-    const Vec3 middle = reach_of(from.parts[tile.part], tile).middle;
-    sum += stratum.area / strata.area * bounds.range_at(tile.part, middle);
-  }
-  return std::min(1.0, sum);
+  return PatchBounds(patches_->scene, from, to).mean();
 }
 
 // Of two patches that may be exchanged, the one that comes first in the scene is seen from, whichever is asked for.

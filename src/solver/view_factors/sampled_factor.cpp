@@ -20,8 +20,6 @@
 namespace exactff::view_factors {
 namespace {
 
-constexpr double kLeastOfChanges = 1.0;  // as a range: less than half of what a term of two numbers is
-
 struct Fragments {
   std::vector<Part> parts;
   std::vector<std::size_t> of;  // by fragment: the part
@@ -44,8 +42,8 @@ class FactorOfPatch : public SampledFunction {
   FactorOfPatch(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to, PatchBounds& bounds)
       : FactorOfPatch(scene, to, bounds, fragments_of(scene, from.parts)) {}
 
-  [[nodiscard]] Span span(const Tile& tile, bool is_alone) override {
-    return bounds_.on(part_of_[tile.part], parts()[tile.part], tile, is_alone);
+  [[nodiscard]] double range(const Tile& tile) override {
+    return bounds_.on(part_of_[tile.part], corners_of(parts()[tile.part], tile));
   }
   [[nodiscard]] std::optional<double> at(const Point& point, std::size_t part) override {
     std::optional<NearPlanes>& near = near_[part];
@@ -86,40 +84,24 @@ class SampledMean::Analysing {
   InterimAnalyses analyses;
 };
 
-SampledMean::SampledMean(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from,
-                         const PreparedPatch& to, std::size_t most, double ratio)
+SampledMean::SampledMean(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to, std::size_t most,
+                         double ratio)
     : scene_(scene),
       from_(from),
       to_(to),
       most_(std::max(most, kPointsOfFirstAnalysis)),
       ratio_(ratio),
       largest_(largest_factor(from, to)),
-      bounds_(scene, seen, from, to),
+      bounds_(scene, from, to),
+      range_(bounds_.mean()),
       known_{0.0, largest_},
       value_(0.5 * largest_),
       lower_(0.0),
-      upper_(largest_) {
-  const Strata strata = strata_of(from.parts, kFewestStrata);
-  for (const Stratum& stratum : strata.strata) {
-    const Tile& tile = strata.tiles[stratum.begin];
-    const Sides sides = sides_of(from.parts[tile.part], tile);
-    const Vec3 middle = sides.at(middle_of(tile));
-    Span span = bounds_.about(tile.part, middle);
-    span.change *= kernel::distance(middle, sides.origin);
-    samples_.push_back({stratum.area / strata.area, span});
-  }
-}
+      upper_(largest_) {}
 SampledMean::~SampledMean() = default;
 
-// From the mean of the ranges or, where they are less, the changes within strata of the same size. Those that are split
-// where changes are large have a smaller mean, but not below the power mean of 2/3.
 double SampledMean::least_width(double strata) const {
-  double sum = 0.0;
-  for (const Sample& sample : samples_) {
-    const double change = sample.span.change * std::sqrt(static_cast<double>(samples_.size()) / strata);
-    sum += sample.share * std::pow(std::min(sample.span.range, kLeastOfChanges * change), 2.0 / 3.0);
-  }
-  return view_factors::least_width(std::pow(sum, 1.5), static_cast<std::size_t>(strata), kRiskOfPatch);
+  return view_factors::least_width(range_, static_cast<std::size_t>(strata), kRiskOfPatch);
 }
 
 bool SampledMean::may_reach(double width, std::uint64_t effort) const {
@@ -199,15 +181,12 @@ class SampledCells::FactorOfCells : public SampledFunction {
   // The integral of what it is at least.
   [[nodiscard]] const Disc& least() const { return least_; }
 
-  [[nodiscard]] Span span(const Tile& tile, bool is_alone) override {
+  [[nodiscard]] double range(const Tile& tile) override {
     const OfCell& cell = cells_[tile.part];
-    if (cell.near != nullptr) return {};
+    if (cell.near != nullptr) return 1.0;
     OfPair& of = *cell.pair;
     if (!of.unhidden) of.unhidden.emplace(of.pair.sight());
-    const double most = of.unhidden->on(corners_of(parts()[tile.part], tile));
-    Span span{.range = cell.share_of(most - cell.mean)};
-    if (is_alone) span.change = cell.change_of(largest_change(of, tile, span.range * cell.bound));
-    return span;
+    return cell.share_of(of.unhidden->on(corners_of(parts()[tile.part], tile)) - cell.mean);
   }
   [[nodiscard]] std::optional<double> at(const Point& point, std::size_t part) override {
     const OfCell& cell = cells_[part];
@@ -227,7 +206,6 @@ class SampledCells::FactorOfCells : public SampledFunction {
     const Pair& pair;
     std::optional<NearPlanes> near_planes;  // all made when asked for
     std::optional<UnhiddenBound> unhidden;
-    std::optional<SlopeBound> slope;
   };
   struct OfCell {
     OfPair* pair;
@@ -235,18 +213,7 @@ class SampledCells::FactorOfCells : public SampledFunction {
     double mean, bound;
 
     [[nodiscard]] double share_of(double excess) const { return std::clamp(0.5 * (excess + bound) / bound, 0.0, 1.0); }
-    [[nodiscard]] double change_of(double change) const { return 0.5 * change / bound; }
   };
-
-  // Of the point factor. Infinite if it would be more than `most`.
-  [[nodiscard]] double largest_change(OfPair& of, const Tile& tile, double most) {
-    if (!of.slope && pieces_ > SlopeBound::kMostPieces) return HUGE_VAL;
-    if (!of.slope) {
-      of.slope.emplace(of.pair.sight());
-      pieces_ += of.slope->pieces();
-    }
-    return of.slope->change_on(reach_of(parts()[tile.part], tile), most) + 2.0 * kRoundedPoints;
-  }
 
   void add(const Pair& pair, const Share& share) {
     std::unique_ptr<OfPair>& of = pairs_[&pair];
@@ -265,7 +232,6 @@ class SampledCells::FactorOfCells : public SampledFunction {
   const ExactScene& scene_;
   std::map<const Pair*, std::unique_ptr<OfPair>> pairs_;
   std::vector<OfCell> cells_;  // by part
-  std::size_t pieces_ = 0;     // of all slopes
   PointFactors factors_;
   Disc least_;
 };

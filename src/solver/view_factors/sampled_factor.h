@@ -31,8 +31,8 @@ class SampledMean {
  public:
   // Keeps references. `most`: points of all analyses, but the first one is always allowed. `ratio`: how many times as
   // wide the interval counts for others.
-  SampledMean(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from, const PreparedPatch& to,
-              std::size_t most, double ratio);
+  SampledMean(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to, std::size_t most,
+              double ratio);
   ~SampledMean();
   SampledMean(const SampledMean&) = delete;
   SampledMean& operator=(const SampledMean&) = delete;
@@ -53,11 +53,6 @@ class SampledMean {
  private:
   class Analysing;
 
-  // What is proved of one of a few strata: the range at its middle, and the change to a corner, at the slope there.
-  struct Sample {
-    double share;  // of the area
-    Span span;
-  };
   struct Interval {
     double lower, upper;
   };
@@ -74,7 +69,7 @@ class SampledMean {
   double ratio_;
   double largest_;  // that the mean can be
   PatchBounds bounds_;
-  std::vector<Sample> samples_;
+  double range_;                          // the mean of its ranges, about
   std::unique_ptr<Analysing> analysing_;  // made when asked for
   Interval known_;
   double value_, lower_, upper_;  // of the interval, widened

@@ -14,8 +14,6 @@ constexpr std::uint64_t kWholeSide = std::uint64_t{1} << kShareBits;
 
 std::uint64_t mix(std::uint64_t key) { return kernel::split_mix(0, key); }
 
-constexpr double kOfMiddle = 0x1p-30;  // of a side: a point at the middle of a tile is rounded down
-constexpr double kOfReach = 0x1p-40;
 constexpr double kAreaRoundings = 0x1p-40;  // relative: far more than there are
 
 // Exactly.
@@ -160,18 +158,10 @@ std::vector<Vec3> corners_of(const Part& part, const Tile& tile) {
   return {sides.origin, sides.at({1, 0}), sides.at({1, 1}), sides.at({0, 1})};
 }
 
-Reach reach_of(const Part& part, const Tile& tile) {
-  const Vec3 middle = sides_of(part, tile).at(middle_of(tile));
-  double radius = 0.0;
-  for (const Vec3& corner : corners_of(part, tile)) radius = std::max(radius, kernel::distance(corner, middle));
-  return {middle, radius * (1.0 + kOfMiddle) + kOfReach};
-}
-
 // --- Split strata ---
 
 namespace {
 
-constexpr double kOfSplit = 0.7;                 // of a square: a half differs less from its control variate
 constexpr std::uint32_t kMostColumns = 1 << 20;  // of a grid that is made finer
 
 Tile finer(Tile tile, std::uint32_t columns, std::uint32_t rows) {
@@ -209,49 +199,25 @@ std::vector<Tile> thirds_of(const Tile& triangle) {
 
 }  // namespace
 
-bool SplitStrata::Known::is_by_middle() const { return kOverChange * span.change < span.range / kDraws; }
-double SplitStrata::Known::term() const { return std::min(kOverChange * span.change, span.range / kDraws); }
-
-SplitStrata::SplitStrata(const std::vector<Part>& parts, std::size_t count, SpanOf span)
-    : parts_(parts), span_(std::move(span)), strata_(strata_of(parts, count)) {
+SplitStrata::SplitStrata(const std::vector<Part>& parts, std::size_t count, RangeOf range)
+    : parts_(parts), range_(std::move(range)), strata_(strata_of(parts, count)) {
   const std::vector<Stratum> first = std::exchange(strata_.strata, {});
   for (std::size_t s = 0; s < first.size(); ++s) put(s, first[s], {});
 }
 
-Span SplitStrata::span_of(const Stratum& stratum) const {
-  const bool is_alone = stratum.end == stratum.begin + 1;
-  Span span = span_(strata_.tiles[stratum.begin], is_alone);
-  for (std::size_t t = stratum.begin + 1; t < stratum.end; ++t) {
-    span.range = std::max(span.range, span_(strata_.tiles[t], false).range);
-  }
-  if (!is_alone) span.change = HUGE_VAL;
-  return span;
+double SplitStrata::range_of(const Stratum& stratum) const {
+  double range = 0.0;
+  for (std::size_t t = stratum.begin; t < stratum.end; ++t) range = std::max(range, range_(strata_.tiles[t]));
+  return range;
 }
 
 bool SplitStrata::is_less_urgent(const Waiting& a, const Waiting& b) {
-  return a.size != b.size ? a.size < b.size : a.stratum > b.stratum;
-}
-
-void SplitStrata::push(Heap& heap, double size, std::size_t stratum) {
-  heap.push_back({size, stratum, known_[stratum].version});
-  std::ranges::push_heap(heap, is_less_urgent);
-  drop_old(heap);
-}
-
-void SplitStrata::drop_old(Heap& heap) const {
-  while (!heap.empty() && heap.front().version != known_[heap.front().stratum].version) {
-    std::ranges::pop_heap(heap, is_less_urgent);
-    heap.pop_back();
-  }
+  return a.term != b.term ? a.term < b.term : a.stratum > b.stratum;
 }
 
 void SplitStrata::set_square(std::size_t stratum, double square) {
-  Known& known = known_[stratum];
-  sum_of_squares_ += square - known.square;
-  known.square = square;
-  ++known.version;
-  push(by_term_, share(stratum) * known.term(), stratum);
-  push(by_square_, square, stratum);
+  sum_of_squares_ += square - known_[stratum].square;
+  known_[stratum].square = square;
 }
 
 // At a place that is free, or at the end.
@@ -262,27 +228,25 @@ void SplitStrata::put(std::size_t place, const Stratum& stratum, const Known& of
   }
   strata_.strata[place] = stratum;
   Known& known = known_[place];
-  known.span = span_of(stratum);
-  known.span.range = std::min(of_whole.span.range, known.span.range);
+  known.range = std::min(of_whole.range, range_of(stratum));
   known.square = of_whole.square;
-  ++known.version;
   sum_of_squares_ += known.square;
-  push(by_term_, share(place) * known.term(), place);
-  if (known.square > 0.0) push(by_square_, known.square, place);
+  waiting_.push_back({share(place) * known.range / kDraws, place});
+  std::ranges::push_heap(waiting_, is_less_urgent);
 }
 
-bool SplitStrata::split(Heap& heap) {
-  if (heap.empty()) return false;
-  const std::size_t place = heap.front().stratum;
+bool SplitStrata::split_largest_term() {
+  if (waiting_.empty()) return false;
+  const std::size_t place = waiting_.front().stratum;
   const Stratum whole = strata_.strata[place];
   const bool is_single = whole.end == whole.begin + 1;
   const Tile tile = strata_.tiles[whole.begin];
   if (is_single && std::max(tile.columns, tile.rows) > kMostColumns / 2) return false;
+  std::ranges::pop_heap(waiting_, is_less_urgent);
+  waiting_.pop_back();
   const Known known = known_[place];
   sum_of_squares_ = std::max(0.0, sum_of_squares_ - known.square);
   is_single ? cut(tile, known, place) : share_out(whole, known, place);
-  drop_old(by_term_);
-  drop_old(by_square_);
   return true;
 }
 
@@ -309,19 +273,19 @@ void SplitStrata::cut(const Tile& tile, const Known& known, std::size_t place) {
 }
 
 SplitStrata::Known SplitStrata::part_of(const Known& known, double share) {
-  return {.span = known.span, .square = kOfSplit * share * share * known.square};
+  return {.range = known.range, .square = share * share * known.square};
 }
 
 // --- Stratified mean ---
 
 namespace {
 
-constexpr double kLeastExpected = 0.25;         // in squares of r; what is less hardly matters
 constexpr double kOfRoundings = 1.0 + 0x1p-40;  // far more than there are
 
-// About the c that makes e least: c / (1 - c) + log(1 - c) = L / q, with q the square that is expected, over r^2.
+// About the c that makes e least: c / (1 - c) + log(1 - c) = L / q, with q the square that is expected, over r^2. What
+// is less than r^2 hardly matters.
 double best_c(double l, double q) {
-  const double ratio = l / std::max(kLeastExpected, q), odds = std::sqrt(2.0 * ratio) + ratio;
+  const double ratio = l / std::max(1.0, q), odds = std::sqrt(2.0 * ratio) + ratio;
   return odds / (1.0 + odds);
 }
 

@@ -10,7 +10,6 @@
 #include "view_factors/exact_scene.h"
 #include "view_factors/prepared_patch.h"
 #include "view_factors/sampled_factor.h"
-#include "view_factors/seen_parts.h"
 #include "view_factors/strata.h"
 
 namespace exactff::view_factors {
@@ -24,7 +23,7 @@ class Strip : public SampledFunction {
  public:
   Strip(std::vector<Part> parts, const Units& units, double from, double to)
       : SampledFunction(std::move(parts)), units_(units), from_(from), to_(to) {}
-  [[nodiscard]] Span span(const Tile&, bool) override { return {}; }
+  [[nodiscard]] double range(const Tile&) override { return 1.0; }
   [[nodiscard]] std::optional<double> at(const Point& point, std::size_t) override {
     ++points_;
     const double x = std::ldexp(point.at.x, static_cast<int>(units_.exponent + units_.shift));
@@ -94,7 +93,7 @@ TEST_F(AnalysesOfStrips, AreWiderAfterOthers) {
 class Noise : public SampledFunction {
  public:
   Noise(std::vector<Part> parts, std::uint64_t seed) : SampledFunction(std::move(parts)), seed_(seed) {}
-  [[nodiscard]] Span span(const Tile&, bool) override { return {}; }
+  [[nodiscard]] double range(const Tile&) override { return 1.0; }
   [[nodiscard]] std::optional<double> at(const Point& point, std::size_t) override {
     const std::uint64_t bits = std::bit_cast<std::uint64_t>(point.at.x) ^ std::bit_cast<std::uint64_t>(point.at.y) << 1;
     return kernel::split_mix(seed_, bits) >> 63 == 0 ? 0.0 : 1.0;
@@ -128,10 +127,9 @@ TEST(SampledMean, IsAsWideAsWhatIsProvedSays) {
   plain.add_ring(plain.patch("above"), {{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}});
   const Scene scene = generate::build(plain);
   const ExactScene exact(scene);
-  const SeenParts seen(exact);
   const PreparedPatch below(exact, scene.select("below"), Columns::kPatches);
   const PreparedPatch above(exact, scene.select("above"), Columns::kPatches);
-  SampledMean mean(exact, seen, below, above, 20000, 1.0);
+  SampledMean mean(exact, below, above, 20000, 1.0);
   constexpr double kTruth = 0.19982489569838746;
   double last = 1.0;
   for (int analysis = 0; analysis < 3; ++analysis) {

@@ -251,11 +251,11 @@ class SplitStrataOf : public testing::TestWithParam<std::vector<Vec3>> {
   const Scene scene_ = build();
   const ExactScene exact_{scene_};
   const std::vector<Part> parts_ = parts_of(exact_, scene_.select("patch"));
-  const SplitStrata::SpanOf span_ = [this](const Tile& tile, bool) { return Span{.range = largest(tile)}; };
+  const SplitStrata::RangeOf range_ = [this](const Tile& tile) { return largest(tile); };
 };
 
 TEST_P(SplitStrataOf, ShareTheAreaAndHoldTheFunction) {
-  SplitStrata split(parts_, 36, span_);
+  SplitStrata split(parts_, 36, range_);
   const double area = split.strata().area;
   for (int i = 0; i < 400; ++i) ASSERT_TRUE(split.split_largest_term());
   double sum = 0.0;
@@ -267,7 +267,7 @@ TEST_P(SplitStrataOf, ShareTheAreaAndHoldTheFunction) {
       Draws draws(1, s, n);
       const Tile& tile = split.strata().tiles[stratum.begin];
       const Vec3 at = point_at(parts_[tile.part], tile, draw_place(tile, draws), exact_.units).at;
-      EXPECT_LE(f(at), split.span(s).range);
+      EXPECT_LE(f(at), split.range(s));
     }
   }
   EXPECT_NEAR(sum, area, 1e-12 * area);
@@ -289,7 +289,7 @@ TEST_P(SplitStrataOf, LeaveTheMeanAsItIs) {
     return result;
   };
   const double truth = mean(strata_of(parts_, 40000), 0).value;
-  SplitStrata split(parts_, 36, span_);
+  SplitStrata split(parts_, 36, range_);
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(split.split_largest_term());
   double sum = 0.0, square = 0.0;
   constexpr std::size_t kAnalyses = 100;
