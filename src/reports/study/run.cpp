@@ -5,7 +5,7 @@
 //   3. Choose sweeps and ladders: defaults, without those that cannot affect the scene. Join them to one list of
 //      ladders, whose rungs are the settings, and plan how much of it is run (runs.h).
 //   4. Run the settings (runs.h).
-//   5. Find where visibility changes in kind; compute a profile along a line.
+//   5. Compute a profile along a line.
 //   6. Measure the times of every setting, with nothing else running.
 //   7. Compute statistics.
 // Threads share the receivers. The place of a result is its index, so nothing depends on the number of threads.
@@ -111,7 +111,7 @@ class Runner {
     choose_settings();
     plan_runs(study_, choose_ladders(), prepared_);
     run_settings();
-    if (request().methods.enabled) look_closer();
+    if (request().methods.enabled) draw_profile();
     measure_times(study_, hooks_);
     if (!study_.settings.empty()) study_.ray_setup_seconds = ray_setup_seconds();
     summarise();
@@ -247,14 +247,7 @@ class Runner {
     study::run_settings(study_, sources_, prepared_, kept, hooks_);
   }
 
-  void look_closer() {
-    auto edges = find_shadow_edges(request(), sources_, hooks_);
-    if (auto* why = std::get_if<LeftOut>(&edges)) {
-      leave_out({std::move(*why)});
-    } else {
-      study_.edge_distance = std::move(std::get<ShadowEdges>(edges).distance);
-      study_.edge_resolution = std::get<ShadowEdges>(edges).resolution;
-    }
+  void draw_profile() {
     auto profile = find_profile(study_, sources_, hooks_);
     if (auto* why = std::get_if<LeftOut>(&profile)) {
       leave_out({std::move(*why)});

@@ -91,7 +91,6 @@ TEST(Completion, BashOffersFilesForScenes) {
 TEST(Completion, BashOffersNamesThatTheProgramKnows) {
   EXPECT_EQ(offered_by_bash({"exactff", "help", "s"}), Offers{"stress"});
   EXPECT_EQ(offered_by_bash({"exactff", "compare", "room.obj", "--method", "hemi"}), Offers{"hemicube"});
-  EXPECT_EQ(offered_by_bash({"exactff", "compare", "room.obj", "--experiment", "kar"}), Offers{"karkanis-times"});
   EXPECT_EQ(offered_by_bash({"exactff", "stress", "--family", "crack-"}), Offers{"crack-ulp"});
   EXPECT_EQ(offered_by_bash({"exactff", "stress", "--family", "shrink,crack-"}), Offers{"shrink,crack-ulp"});
   EXPECT_EQ(offered_by_bash({"exactff", "stress", "--family", ""}).size(), stress::families().size());
