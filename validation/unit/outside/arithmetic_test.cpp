@@ -285,7 +285,7 @@ TEST(ThreadsArithmetic, ChangesNoMethodsValue) {
   const Scene scene = generate::build(plain);
   const Receiver receiver = generate::receiver_of(plain);
   Words texts = {"adaptive:variant=literal", "hemicube:rotation=30,resolution=20", "nettle:variant=literal",
-                 "area-sampling:pattern=r2", "wallace:pattern=jittered,splits=3"};
+                 "area-sampling:pattern=sobol", "wallace:pattern=jittered,splits=3"};
   for (const methods::Method* method : methods::all_methods()) texts.push_back(method->name);
   for (const std::string& text : texts) {
     SCOPED_TRACE(text);
