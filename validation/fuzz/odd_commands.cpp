@@ -151,8 +151,6 @@ class CommandWriter {
     if ((table_.name == "matrix" || table_.name == "radiosity") && !has_any({"--budget"}))
       words_.insert(words_.end(), {"--budget", "20"});
     if (random_.one_in(20)) return;
-    const bool sampled = has_any({"--eps-b", "--eps-a", "--rays", "--seed", "--pattern", "--variant"});
-    if (table_.name == "point" && sampled && !has_any({"--adaptive"})) words_.emplace_back("--adaptive");
     if (table_.name == "compare" && has_any({"--method"}) && !has_any({"--sweep"})) words_.emplace_back("--sweep");
     if (table_.name == "view") {
       if (has_any({"--projection", "--up"}) && !has_any({"--svg"}))
@@ -203,7 +201,7 @@ class CommandWriter {
     if (kind.starts_with("UxV")) return grid();
     if (kind == "COMMAND") return random_.one_in(4) ? odd_name(random_) : one_of(random_, row.words);
     if (kind == "WxH") return image_size();
-    if (kind.starts_with("METHOD") && table_.name == "render") return quick_method();
+    if (kind.starts_with("METHOD") && table_.name != "compare") return quick_method();
     if (kind.starts_with("METHOD")) return random_.one_in(20) ? odd_name(random_) : odd_method(random_);
     if (kind == "DIR") return random_.one_in(20) ? odd_place() : "out/folder";
     if (row.completion == cli::Completion::kFiles && kind != "TEXT") return file(row);

@@ -105,20 +105,22 @@ bool is_done(const CompareArguments& args, const report::Plan& plan) {
 
 report::Plan plan_of(const CompareArguments& args) {
   const std::string& path = args.scene.scene.path;
+  const std::string flags =
+      flags::command_words(*args.scene.scene.command, {"--threads", "--output", "--vtk", "--resume", "--force"});
   report::Plan plan;
   if (flags::is_study_file(path)) {
-    const std::string flags =
-        flags::command_words(*args.scene.scene.command, {"--threads", "--output", "--vtk", "--resume", "--force"});
     if (!flags.empty()) {
       text::refuse("flags of a scene are given with a study file:" + flags,
                    "a study file has several scenes, each with its own flags",
                    "write them on the scene's line in the file");
     }
     plan = flags::read_study_file(path, args.threads);
+    plan.flags = text::read_text_file(path, "a study file");
   } else {
     flags::Comparison one = flags::comparison_of(args.scene, args.threads);
     plan.add_scene(one.title, std::move(one.scene), std::move(one.request), std::move(one.warnings));
     plan.scenes.front().name.clear();
+    plan.flags = flags;
   }
   plan.command_line = command_line(args);
   plan.vtk = args.further.vtk;
@@ -173,7 +175,7 @@ int run(const CLI::App& command, const CompareArguments& args) {
                            "; to continue, run the same command with --resume\n";
   const InterruptWatch watch("exactff: interrupted; " + kept);
   ProgressBar bar;
-  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const Hooks hooks = bar.hooks();
   const std::size_t resumed = journal.size();
   try {
     const report::Outcome outcome = report::carry_out(plan, args.folder, journal, hooks);
@@ -307,7 +309,7 @@ int run(const StressArguments& args) {
   const std::string given_up = "exactff: interrupted; no family is finished, and nothing was written\n";
   const InterruptWatch watch(given_up);
   ProgressBar bar;
-  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const Hooks hooks = bar.hooks();
   stress::Report report;
   try {
     report = stress::run({args.families, args.threads}, hooks);

@@ -5,7 +5,6 @@
 #include <cctype>
 #include <fstream>
 #include <iterator>
-#include <type_traits>
 
 #include "exactff/version.h"
 #include "files/file.h"
@@ -13,6 +12,7 @@
 #include "kernel/float_environment.h"
 #include "page/output_folder.h"
 #include "report/report.h"
+#include "study/runs.h"
 #include "text/hashes.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -65,57 +65,17 @@ Outcome outcome_of(const StudyReport& report) {
   return outcome;
 }
 
-// Everything that the values and the words of a report depend on; not threads or the engine.
-class Identity {
- public:
-  template <class... Parts>
-  void add(const Parts&... parts) {
-    (add_one(parts), ...);
-  }
-  [[nodiscard]] std::string digits() const { return hash_.digits(); }
-
- private:
-  void add_one(const std::string& text) {
-    hash_.add(std::uint64_t{text.size()});
-    hash_.add_bytes(text);
-  }
-  void add_one(double number) { hash_.add(number); }
-  template <class Number>
-  requires std::is_integral_v<Number> || std::is_enum_v<Number>
-  void add_one(Number number) { hash_.add(static_cast<std::uint64_t>(number)); }
-  template <class Item>
-  void add_one(const std::vector<Item>& list) {
-    add(list.size());
-    for (const Item& item : list) add(item);
-  }
-  template <class Value>
-  void add_one(const std::optional<Value>& value) {
-    add(value.has_value());
-    if (value) add(*value);
-  }
-  void add_one(const Vec3& v) { hash_.add(v); }
-  void add_one(const LeftOut& item) { add(item.what, item.why); }
-  void add_one(const Receiver& r) { add(r.point, r.normal, r.on, r.id); }
-  void add_one(const methods::Choice& choice) { add(choice.text()); }
-  void add_one(const study::Ladder& ladder) { add(ladder.name, ladder.along, ladder.rungs); }
-  void add_one(const render::Camera& camera) { add(camera.eye, camera.look, camera.up, camera.fov); }
-  void add_one(const study::Sweeps& s) { add(s.enabled, s.eps_b, s.eps_a, s.rays, s.seeds, s.patterns, s.variants); }
-  void add_one(const study::MethodSweep& m) { add(m.enabled, m.ladders, m.seeds, m.receivers, m.budget); }
-  void add_one(const PlannedScene& scene) {
-    const study::Request& request = scene.request;
-    add(scene.name, scene.title, scene.scene->hash(), request.scene_name, request.receivers_name, request.receivers);
-    for (const Selection& source : request.sources) add(scene.scene->name_of(source));
-    add(request.sweeps, request.methods, request.sweep_budget, request.seconds_for_a_time, request.camera, request.up);
-  }
-
-  text::Fnv1a hash_;
-};
-
 // The line of the page that says what was asked for: a finished folder of the same request need not be computed again.
 std::string identity_line(const Plan& plan) {
-  Identity identity;
-  identity.add(std::string(kVersion), plan.title, plan.scenes);
-  return "<!-- request " + identity.digits() + " -->";
+  text::Fnv1a hash;
+  const auto add = [&](const std::string& text) {
+    hash.add(std::uint64_t{text.size()});
+    hash.add_bytes(text);
+  };
+  add(std::string(kVersion));
+  add(plan.flags);
+  for (const PlannedScene& scene : plan.scenes) add(scene.title + '\n' + study::text_of_exact_values(scene.request));
+  return "<!-- request " + hash.digits() + " -->";
 }
 
 std::filesystem::path page_in(const std::filesystem::path& folder) { return folder / page::kReportFile; }

@@ -24,8 +24,9 @@ struct PlannedScene {
 struct Plan {
   std::string title;  // of the report; empty: that of the only scene
   std::vector<PlannedScene> scenes;
-  std::string command_line;                       // shown in the last section of the report
-  std::filesystem::path vtk;                      // the file of write_vtk for the only scene; empty: none
+  std::string flags;          // all that the values depend on beside the scenes and their receivers, as it was given
+  std::string command_line;   // shown in the last section of the report
+  std::filesystem::path vtk;  // the file of write_vtk for the only scene; empty: none
   std::vector<std::filesystem::path> files_read;  // of the scenes in a study file, and their receivers
 
   // Gives the scene a name that no other has.

@@ -110,6 +110,12 @@ struct Shown {
 // all times have been measured. Throws Cancelled.
 [[nodiscard]] std::optional<Strip> strip_of(const Study& study, std::vector<LeftOut>& left_out, const Hooks& hooks);
 
+// A picture of one receiver's view of one source, as a self-contained SVG document: each plane of the source as seen
+// from x, the projected occluders, the exact visible region. With `sampled`, it shows the leaves in its leaf_list.
+// Leaves that are not in the list, and planes that x does not face, are left out, with a note.
+[[nodiscard]] std::string visibility_svg(const Scene& scene, const Receiver& receiver, const ExactSource& source,
+                                         const FormFactor& result, const AdaptiveResult* sampled = nullptr);
+
 // --- the page ---
 
 // What belongs to a scene of a report.

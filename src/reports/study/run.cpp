@@ -85,19 +85,6 @@ void fields(Words& words, ExactRow& row) {
   words(row.certified, row.sampled);
 }
 
-// Everything that the exact values depend on.
-std::string request_text(const Request& request) {
-  std::string text = request.scene->hash();
-  const auto put = [&](const std::string& part) { text += '\n' + part; };
-  for (const Receiver& r : request.receivers) {
-    for (const double c : {r.point.x, r.point.y, r.point.z, r.normal.x, r.normal.y, r.normal.z}) put(text::shortest(c));
-    for (const FaceId face : r.on) put(std::to_string(index_of(face)));
-    if (r.on.empty()) put("free");
-  }
-  for (const Selection& source : request.sources) put(request.scene->name_of(source));
-  return text;
-}
-
 class Runner {
  public:
   Runner(Request request, const Hooks& hooks, jobs::Journal* journal) : hooks_(hooks), journal_(journal) {
@@ -140,7 +127,7 @@ class Runner {
       }
       require_moderate(of_all_sources, request());
     }
-    request_hash_ = jobs::short_hash(request_text(request()));
+    request_hash_ = jobs::short_hash(text_of_exact_values(request()));
   }
 
   void find_exact_values() {
@@ -280,6 +267,18 @@ class Runner {
 };
 
 }  // namespace
+
+std::string text_of_exact_values(const Request& request) {
+  std::string text = request.scene->hash();
+  const auto put = [&](const std::string& part) { text += '\n' + part; };
+  for (const Receiver& r : request.receivers) {
+    for (const double c : {r.point.x, r.point.y, r.point.z, r.normal.x, r.normal.y, r.normal.z}) put(text::shortest(c));
+    for (const FaceId face : r.on) put(std::to_string(index_of(face)));
+    if (r.on.empty()) put("free");
+  }
+  for (const Selection& source : request.sources) put(request.scene->name_of(source));
+  return text;
+}
 
 Study run(Request request, const Hooks& hooks, jobs::Journal* journal) {
   const kernel::StandardArithmetic arithmetic;
