@@ -315,7 +315,7 @@ class CommandWriter {
 
   // Lists and names: names from the description, numbers, and families.
   std::string word(const OptionRow& row) {
-    if (row.names.back() == "--family") return std::string(one_of(random_, stress::families()).name);
+    if (row.names.back() == "--family") return std::string(one_of(random_, stress::all_families()).name);
     if (row.names.back() == "--rays" || row.names.back() == "--seeds")
       return random_.one_in(4) ? "1,4" : small_whole(random_, 1, 4);
     if (row.names.back() == "--title") return odd_name(random_);

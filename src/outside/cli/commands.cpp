@@ -334,7 +334,7 @@ std::vector<std::string> known_words(const std::string& kind) {
   } else if (kind == "SCENE") {
     for (const models::Model* model : models::all_models()) words.push_back('@' + std::string(model->name));
   } else if (kind == "FAMILY") {
-    for (const stress::FamilyInfo& family : stress::families()) words.emplace_back(family.name);
+    for (const stress::Family& family : stress::all_families()) words.emplace_back(family.name);
   }
   return words;
 }

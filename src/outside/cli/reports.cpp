@@ -247,17 +247,15 @@ struct StressArguments {
 };
 
 void print_list() {
-  TextTable table;
-  table.add_columns({"family", "stiffness", "what happens"});
-  for (const stress::FamilyInfo& family : stress::families()) {
-    table.add_row({std::string(family.name), std::string(family.stiffness), std::string(family.title)});
+  for (const stress::Family& family : stress::all_families()) {
+    std::cout << family.name << ": " << family.title << "; stiffness: " << family.stiffness << "\n  " << family.about
+              << '\n';
   }
-  table.print(std::cout);
 }
 
 void print_family(const stress::FamilyResult& result) {
-  std::cout << result.family.title << " (" << result.family.name << ")\n"
-            << "stiffness: " << result.family.stiffness << "; truth: " << to_string(result.family.evidence) << '\n';
+  std::cout << result.family->title << " (" << result.family->name << ")\n"
+            << "stiffness: " << result.family->stiffness << "; truth: " << to_string(result.family->evidence) << '\n';
   TextTable table;
   table.add_columns({"stiffness", "form factor", "exact bits", "exact time"}, Align::kRight);
   for (stress::Method method : stress::kMethods) table.add_column(std::string(short_name_of(method)), Align::kRight);
@@ -281,7 +279,7 @@ void print_stress_summary(const stress::Report& report) {
   table.add_column("ends at", Align::kRight);
   for (stress::Method method : stress::kMethods) table.add_column(std::string(short_name_of(method)));
   for (const stress::FamilyResult& family : report.families) {
-    std::vector<std::string> cells = {std::string(family.family.name),
+    std::vector<std::string> cells = {std::string(family.family->name),
                                       stress::stiffness_text(family.rows.back().stiffness)};
     for (stress::Method method : stress::kMethods) cells.push_back(stress::reaches_text(family, method));
     table.add_row(std::move(cells));

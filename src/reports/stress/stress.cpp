@@ -14,19 +14,85 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numbers>
 
 #include "exactff/adaptive.h"
 #include "files/parallel.h"
 #include "files/stopwatch.h"
 #include "kernel/ball.h"
 #include "kernel/float_environment.h"
-#include "stress/families.h"
+#include "kernel/vec.h"
 #include "table/rows.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
 namespace exactff::stress {
+
+using kernel::cross;
+using kernel::dot;
+using kernel::length;
+
 namespace {
+
+// --- Eq. (4) in double ---
+
+// Eq. (4) of F. Tampieri (1992) in plain double, in the three forms that programs use: the results of careful and of
+// careless code. Each estimates the form factor of a region from its boundary.
+
+enum class AngleFormula {
+  kAcos,             // unit vectors a and b, acos(a . b), a x b
+  kAtan2,            // atan2(|a x b|, a . b)
+  kAtan2Difference,  // the same, but a x b is computed as a x (b - a)
+};
+
+// A closed polygon, counter-clockwise seen from the front of the source; holes are clockwise.
+using Polygon = std::vector<Vec3>;
+
+Vec3 unit(const Vec3& a) {
+  const double r = length(a);
+  return {a.x / r, a.y / r, a.z / r};
+}
+
+double term_by_acos(const Vec3& a, const Vec3& b, const Vec3& n) {
+  const Vec3 p = unit(a), q = unit(b);
+  const Vec3 c = cross(p, q);
+  const double sine = length(c);
+  return sine == 0.0 ? 0.0 : std::acos(std::clamp(dot(p, q), -1.0, 1.0)) * dot(n, c) / sine;
+}
+
+double term_by_atan2(const Vec3& a, const Vec3& b, const Vec3& a_cross_b, const Vec3& n) {
+  const double sine = length(a_cross_b);
+  return sine == 0.0 ? 0.0 : std::atan2(sine, dot(a, b)) * dot(n, a_cross_b) / sine;
+}
+
+double term(const Vec3& a, const Vec3& b, const Vec3& n, AngleFormula formula) {
+  switch (formula) {
+    case AngleFormula::kAcos:
+      return term_by_acos(a, b, n);
+    case AngleFormula::kAtan2:
+      return term_by_atan2(a, b, cross(a, b), n);
+    case AngleFormula::kAtan2Difference:
+      break;
+  }
+  return term_by_atan2(a, b, cross(a, kernel::difference(b, a)), n);
+}
+
+// -1/(2 pi |n|) times the sum over the edges of angle n . (a x b) / |a x b|, with a and b relative to x. Nothing is
+// clamped, but the angle of two unit vectors is 0 or pi if their product rounds beyond 1. An edge with a x b = 0 adds
+// nothing.
+double form_factor_in_double(std::span<const Polygon> region, const Vec3& x, const Vec3& normal, AngleFormula formula) {
+  const Vec3 n = unit(normal);
+  double sum = 0.0;
+  for (const Polygon& polygon : region) {
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      sum +=
+          term(kernel::difference(polygon[i], x), kernel::difference(polygon[(i + 1) % polygon.size()], x), n, formula);
+    }
+  }
+  return -0.5 * std::numbers::inv_pi * sum;
+}
+
+// --- trials ---
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kTruthDigits = 40;
@@ -72,7 +138,7 @@ class Trial {
     const std::vector<FaceId> none;
     unoccluded_ = exact({.digits = kTruthDigits, .only_occluders = &none}).enclosure;
     row_.tolerance = kToleranceShare * unoccluded_.upper();
-    row_.truth = case_.truth ? case_.truth->value() : exact({.digits = kTruthDigits}).enclosure;
+    row_.truth = case_.truth ? *case_.truth : exact({.digits = kTruthDigits}).enclosure;
     // A ball of radius 0 about 0 is a proved zero.
     zero_ = row_.truth.lower() == 0.0 && row_.truth.upper() == 0.0;
     row_.agrees = row_.truth.nearest() == result.value && row_.truth.overlaps(result.enclosure) &&
@@ -132,14 +198,14 @@ class Trial {
 
 [[noreturn]] void refuse_family(const std::string& name) {
   std::vector<std::string> names;
-  for (const Family& family : all_families()) names.emplace_back(family.info.name);
+  for (const Family& family : all_families()) names.emplace_back(family.name);
   text::refuse("there is no family '" + name + "'", {},
                "exactff stress --list prints them all: " + text::enumerate(names));
 }
 
 const Family& family_named(const std::string& name) {
   for (const Family& family : all_families()) {
-    if (family.info.name == name) return family;
+    if (family.name == name) return family;
   }
   refuse_family(name);
 }
@@ -217,7 +283,7 @@ Report run(const Request& request, const Hooks& hooks) {
   for (const Family* family : select_families(request.families)) {
     const std::size_t count = family->stiffnesses.size();
     for (std::size_t row = 0; row < count; ++row) places.push_back({family, report.families.size(), row});
-    report.families.push_back({family->info, std::vector<Row>(count)});
+    report.families.push_back({family, std::vector<Row>(count)});
   }
   std::vector<std::atomic<std::size_t>> finished(report.families.size());  // rows
   try {
@@ -240,15 +306,6 @@ std::string_view to_string(Evidence evidence) {
 
 std::string_view name_of(Method method) { return kMethodNames[static_cast<std::size_t>(method)].name; }
 std::string_view short_name_of(Method method) { return kMethodNames[static_cast<std::size_t>(method)].short_name; }
-
-const std::vector<FamilyInfo>& families() {
-  static const std::vector<FamilyInfo> list = [] {
-    std::vector<FamilyInfo> infos;
-    for (const Family& family : all_families()) infos.push_back(family.info);
-    return infos;
-  }();
-  return list;
-}
 
 double usable_up_to(const FamilyResult& result, Method method, double threshold) {
   return good_up_to(result, [&](const Row& row) { return row.of(method).error < threshold; });  // not NaN
@@ -338,8 +395,8 @@ table::Table table_of(const Report& report) {
        table::counts("precision_bits,occluders,edges"), answers, table::texts("refused_by")});
   for (const FamilyResult& family : report.families) {
     for (const Row& r : family.rows) {
-      rows << family.family.name << r.stiffness << r.truth.decimals(kPrintedDigits).value_or(r.truth.midpoint())
-           << to_string(family.family.evidence) << r.agrees << exactff::to_string(r.status) << r.precision_bits
+      rows << family.family->name << r.stiffness << r.truth.decimals(kPrintedDigits).value_or(r.truth.midpoint())
+           << to_string(family.family->evidence) << r.agrees << exactff::to_string(r.status) << r.precision_bits
            << r.occluders << r.edges;
       std::string refused_by;
       for (const Method method : kMethods) {
@@ -370,7 +427,7 @@ struct Tally {
 Tally tally(const Report& report) {
   Tally t;
   for (const FamilyResult& family : report.families) {
-    const bool independent = family.family.evidence != Evidence::kCertified;
+    const bool independent = family.family->evidence != Evidence::kCertified;
     for (const Row& row : family.rows) {
       ++(independent ? t.independent : t.certified);
       t.most_bits = std::max(t.most_bits, row.precision_bits);

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,8 @@
 #include "exactff/enclosure.h"
 #include "exactff/exact.h"
 #include "exactff/jobs.h"
+#include "exactff/receiver.h"
+#include "exactff/scene.h"
 #include "exactff/table.h"
 
 namespace exactff::stress {
@@ -27,14 +30,26 @@ enum class Evidence {
 };
 [[nodiscard]] std::string_view to_string(Evidence evidence);
 
-struct FamilyInfo {
+// A scene with its receiver and source, and what is known about the result.
+struct Case {
+  double stiffness = 1.0;
+  Scene scene;
+  Receiver receiver;
+  std::optional<Enclosure> truth;  // none: compared with the exact method's own enclosure
+};
+
+// A list of stiffnesses, and a function that makes the scene for one of them: one receiver, one patch `source`, one
+// patch `occluder`.
+struct Family {
   std::string_view name;  // the name for --family
   std::string_view title;
-  std::string_view stiffness;  // the meaning of the number
-  std::string_view about;      // what happens as it grows, and why that is hard
+  std::string_view stiffness;       // the meaning of the number
+  std::string_view about;           // what happens as it grows, and why that is hard
+  std::vector<double> stiffnesses;  // ascending
+  Case (*make)(double stiffness);
   Evidence evidence = Evidence::kClosedForm;
 };
-[[nodiscard]] const std::vector<FamilyInfo>& families();
+[[nodiscard]] const std::vector<Family>& all_families();  // in the order of the report
 
 enum class Method {
   kExact,
@@ -79,7 +94,7 @@ struct Row {
 };
 
 struct FamilyResult {
-  FamilyInfo family;
+  const Family* family = nullptr;
   std::vector<Row> rows;  // in order of increasing stiffness
 };
 
