@@ -46,7 +46,7 @@ map=(data/scenes/lightmap_room.obj --lightmap 512x512)
   --svg "$out/cornell_box_view.svg" > /dev/null
 "$program" point @teapot:segments=8 --at -3 0.4 0 --normal 0 0 1 --on floor --source light --plain \
   --svg "$out/teapot_outline.svg" > /dev/null
-"$program" point data/scenes/blinds_room.obj --at 3 0 3.3 --normal 0 1 0 --source window --adaptive --eps-b 0.01 --plain \
+"$program" point data/scenes/blinds_room.obj --at 3 0 3.3 --normal 0 1 0 --source window --method adaptive:eps_B=0.01 --plain \
   --svg "$out/blinds_leaves.svg" > /dev/null
 if command -v xvfb-run > /dev/null; then  # packages xvfb, xauth and python3-vtk9: Debian's VTK draws by X
   "$program" truth "${box[0]}" --on floor,ceiling,back,left,right,short_block,tall_block --grid 256x256 -o "$cells/map.csv" \

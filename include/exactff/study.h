@@ -254,10 +254,6 @@ struct Study {
   // them in large scenes, where drawing that region takes long. Only these have silent and wrong leaves.
   std::vector<std::size_t> judged;
   MethodStudy methods;
-  // By receiver: the distance to the nearest position on its face where Sight changes for some source, accurate to
-  // three quarters of `edge_resolution`. Empty if the receivers do not form a grid.
-  std::vector<double> edge_distance;
-  double edge_resolution = 0.0;
   std::optional<Profile> profile;
   std::vector<LeftOut> left_out;
   double exact_setup_seconds = 0.0;  // once per source

@@ -15,7 +15,9 @@
 #include <functional>
 #include <iosfwd>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "exactff/exact.h"
@@ -67,6 +69,14 @@ struct Request {
   jobs::Shard shard;                 // if not 1/1, the file holds the rows of this shard, for merge()
   int threads = 0;                   // 0: as many as this process may use
 };
+
+// A column that a request may add, or several. `name`: of the flag --NAME of `exactff truth`, and in Python.
+struct OptionalColumn {
+  std::string_view name, help;
+  bool Request::*wanted;
+};
+// All of them. To add one: its member above, its line and its fields in truth/columns.cpp, its value in truth/rows.cpp.
+[[nodiscard]] std::span<const OptionalColumn> optional_columns();
 
 struct Summary : jobs::Summary {
   std::array<std::uint64_t, 4> rows_by_status{};  // by Status

@@ -73,7 +73,7 @@ for kind in "unoccluded", "partly":
     row(kind, figure(f"cornell/{kind}", "receivers"), figure(f"cornell/{kind}", "real_time"))
 
 head("All faces from one point, ms: one by one, and in one sweep.", "scene", "faces seen", "loop", "sweep", "loop / sweep")
-for scene in "karkanis/1000 karkanis/10000 covered/10000 room/1600".split():
+for scene in "karkanis/500 karkanis/10000 covered/10000 room/1600".split():
     loop, sweep = ms(f"view/loop/{scene}"), ms(f"view/sweep/{scene}")
     row(scene, figure(f"view/sweep/{scene}", "seen"), loop, sweep, ratio(loop, sweep))
 

@@ -101,7 +101,7 @@ void add(const std::string& scene, const Maker& make) {
 }  // namespace
 
 void add_view() {
-  add("karkanis/1000", [] { return karkanis(1000, 1); });
+  add("karkanis/500", [] { return karkanis(500, 1); });
   add("karkanis/10000", [] { return karkanis(10'000, 1); });
   add("covered/10000", [] { return karkanis(10'000, 20); });
   add("room/1600", [] { return closed_room(10); });

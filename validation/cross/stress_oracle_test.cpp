@@ -1,7 +1,7 @@
 // The oracle checks every stiff scene that has few enough faces for it, also where no closed form exists.
 #include <gtest/gtest.h>
 
-#include "stress/families.h"
+#include "stress/stress.h"
 #include "support/decimal.h"
 #include "support/oracle.h"
 
@@ -35,7 +35,7 @@ TEST_P(StiffScene, HasTheSameValueAndFractionForBoth) {
 
 INSTANTIATE_TEST_SUITE_P(All, StiffScene, testing::Range<std::size_t>(0, all_families().size()),
                          [](const testing::TestParamInfo<std::size_t>& tested) {
-                           std::string name(all_families()[tested.param].info.name);
+                           std::string name(all_families()[tested.param].name);
                            std::erase(name, '-');
                            return name;
                          });

@@ -130,7 +130,7 @@ class CommandWriter {
 
   void add_option(const OptionRow& row) {
     const std::string& name = row.names.back();
-    if (contains_any(name, {"--help", "--experiment"})) return;  // an experiment takes half a minute
+    if (name == "--help") return;
     const bool told =
         places_receivers(row) || (name == "--on" && words_.front() != "point" && words_.front() != "view");
     const std::size_t rarity = row.required ? 1 : keeps_work_small(row) ? 1 : told ? 40 : row.value.empty() ? 5 : 7;
@@ -151,8 +151,6 @@ class CommandWriter {
     if ((table_.name == "matrix" || table_.name == "radiosity") && !has_any({"--budget"}))
       words_.insert(words_.end(), {"--budget", "20"});
     if (random_.one_in(20)) return;
-    const bool sampled = has_any({"--eps-b", "--eps-a", "--rays", "--seed", "--pattern", "--variant"});
-    if (table_.name == "point" && sampled && !has_any({"--adaptive"})) words_.emplace_back("--adaptive");
     if (table_.name == "compare" && has_any({"--method"}) && !has_any({"--sweep"})) words_.emplace_back("--sweep");
     if (table_.name == "view") {
       if (has_any({"--projection", "--up"}) && !has_any({"--svg"}))
@@ -203,7 +201,7 @@ class CommandWriter {
     if (kind.starts_with("UxV")) return grid();
     if (kind == "COMMAND") return random_.one_in(4) ? odd_name(random_) : one_of(random_, row.words);
     if (kind == "WxH") return image_size();
-    if (kind.starts_with("METHOD") && table_.name == "render") return quick_method();
+    if (kind.starts_with("METHOD") && table_.name != "compare") return quick_method();
     if (kind.starts_with("METHOD")) return random_.one_in(20) ? odd_name(random_) : odd_method(random_);
     if (kind == "DIR") return random_.one_in(20) ? odd_place() : "out/folder";
     if (row.completion == cli::Completion::kFiles && kind != "TEXT") return file(row);
@@ -317,7 +315,7 @@ class CommandWriter {
 
   // Lists and names: names from the description, numbers, and families.
   std::string word(const OptionRow& row) {
-    if (row.names.back() == "--family") return std::string(one_of(random_, stress::families()).name);
+    if (row.names.back() == "--family") return std::string(one_of(random_, stress::all_families()).name);
     if (row.names.back() == "--rays" || row.names.back() == "--seeds")
       return random_.one_in(4) ? "1,4" : small_whole(random_, 1, 4);
     if (row.names.back() == "--title") return odd_name(random_);

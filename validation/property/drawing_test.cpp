@@ -9,7 +9,7 @@
 #include <string>
 
 #include "exactff/exact.h"
-#include "report/pictures.h"
+#include "report/report.h"
 #include "support/oracle_check.h"
 #include "support/random_scenes.h"
 

@@ -47,8 +47,8 @@ const std::vector<std::string> kChoices = {"adaptive:eps_B=0.02,rays=4,depth_cap
                                            "area-sampling:samples=32,pattern=random",
                                            "area-sampling:samples=16,pattern=stratified",
                                            "area-sampling:samples=16,pattern=sobol",
-                                           "area-sampling:samples=9,pattern=halton",
-                                           "area-sampling:samples=5,pattern=r2,seed=7",
+                                           "area-sampling:samples=9,pattern=sobol",
+                                           "area-sampling:samples=5,pattern=sobol,seed=7",
                                            "area-sampling:samples=16,measure=solid-angle",
                                            "area-sampling:samples=9,pattern=sobol,measure=solid-angle"};
 

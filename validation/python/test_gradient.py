@@ -49,7 +49,7 @@ def test_one_pair_names_the_faces_of_a_kink():
 def test_truth_files_have_it(tmp_path):
     receivers = ROOM.receivers("floor", grid=(4, 4))
     path = tmp_path / "truth.csv"
-    exactff.truth(ROOM, receivers, path, ["light"], gradient=True, progress=False)
+    exactff.truth(ROOM, receivers, path, ["light"], columns=["gradient"], progress=False)
     rows = truth_rows(path)
     f = ROOM.form_factors(receivers.points, receivers.normals, ["light"], receivers.on, gradient=True)
     for axis, name in enumerate(["dF_dx", "dF_dy", "dF_dz"]):

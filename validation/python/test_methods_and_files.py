@@ -34,14 +34,14 @@ def test_a_truth_file_has_the_bytes_of_the_program(tmp_path):
     program("truth", CORNELL, "--on", "floor", "--grid", "6x5", "--source", "light", "--uv", "--unoccluded", "-o",
             tmp_path / "program.csv")
     told = []
-    summary = exactff.truth(ROOM, GRID, tmp_path / "python.csv", "light", uv=True, unoccluded=True,
+    summary = exactff.truth(ROOM, GRID, tmp_path / "python.csv", "light", columns=["uv", "unoccluded"],
                             progress=lambda done, total: told.append((done, total)))
     assert (tmp_path / "python.csv").read_bytes() == (tmp_path / "program.csv").read_bytes()
     assert (summary.rows, summary.certified + summary.zero, summary.not_certified) == (30, 30, 0)
     assert told[-1] == (30, 30)
     with pytest.raises(exactff.InputError, match="python.csv"):
         exactff.truth(ROOM, GRID, tmp_path / "python.csv", "light")
-    again = exactff.truth(ROOM, GRID, tmp_path / "python.csv", "light", uv=True, unoccluded=True, existing="resume")
+    again = exactff.truth(ROOM, GRID, tmp_path / "python.csv", "light", columns=["uv", "unoccluded"], existing="resume")
     assert again.resumed == 30
     with pytest.raises(exactff.InputError, match="choose"):
         exactff.truth(ROOM, GRID, tmp_path / "python.csv", existing="overwrite")

@@ -1,6 +1,5 @@
-"""The package: stubs, docstrings, examples, the blocks in the documents."""
+"""The package: docstrings, examples, the blocks in the documents."""
 
-import ast
 import inspect
 import pathlib
 import re
@@ -11,44 +10,10 @@ import sys
 import pytest
 
 import exactff
-import exactff._exactff as compiled
 from support import CORNELL, program, SCENES, SOURCE, run
 
 PACKAGE = pathlib.Path(exactff.__file__).parent
 EXAMPLES = SOURCE / "src" / "outside" / "python" / "examples"
-
-
-def arguments_in_docstring(function):
-    """pybind11 puts the signature into the first line."""
-    inside = function.__doc__.splitlines()[0].split("(", 1)[1].rsplit(") ->", 1)[0]
-    return [name for name in re.findall(r"(?:^|, )(\w+): ", inside) if name != "self"]
-
-
-def stubs_of(body):
-    return {node.name: node for node in body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
-
-
-def compare(stub, real, where):
-    names = [argument.arg for argument in stub.args.args if argument.arg != "self"]
-    assert names == arguments_in_docstring(real), where
-
-
-def test_stubs_are_those_of_the_compiled_module():
-    tree = stubs_of(ast.parse((PACKAGE / "_exactff.pyi").read_text()).body)
-    hidden = {"__doc__", "__file__", "__loader__", "__name__", "__package__", "__spec__", "version", "matrix_formats", "openfoam_files"}
-    assert set(tree) == set(vars(compiled)) - hidden
-    for name, stub in tree.items():
-        real = getattr(compiled, name)
-        if isinstance(stub, ast.FunctionDef):
-            compare(stub, real, name)
-            continue
-        members = {key for key in vars(real) if not key.startswith("_") or key in ("__len__",)}
-        attributes = {node.target.id for node in stub.body if isinstance(node, ast.AnnAssign)}
-        methods = stubs_of(stub.body)
-        assert members == (set(methods) | attributes) - {"__init__"}, name
-        for key, method in methods.items():
-            if key in members and not isinstance(vars(real)[key], property):
-                compare(method, getattr(real, key), f"{name}.{key}")
 
 
 def public_things():

@@ -128,7 +128,7 @@ def test_no_leak_in_100000_calls():
 
     def some(calls):
         for _ in range(calls):
-            compiled.form_factor(ROOM._scene, POINT, UP, floor, "light", False, False, False, False, 0, 65536, None, FORM_FACTOR).enclosure
+            compiled.form_factor(ROOM._scene, POINT, UP, floor, "light", False, False, False, False, 0, 65536, None, FORM_FACTOR).facts()
         for _ in range(calls // 20):
             ROOM.form_factors(point, up, "light", 0, full=True)
             ROOM.form_factor(POINT, UP, "light", 0, gradient=True)

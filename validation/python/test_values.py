@@ -87,7 +87,7 @@ def test_unit_normals_are_those_of_truth_files(tmp_path):
     room = exactff.Scene.read(CORNELL)
     at = room.receivers("tall_block", centres=True)
     assert np.hypot.reduce(at.normals, axis=1).max() > 1e4
-    exactff.truth(room, at, tmp_path / "t.csv", unit_normals=True)
+    exactff.truth(room, at, tmp_path / "t.csv", columns=["unit-normals"])
     rows = truth_rows(tmp_path / "t.csv")
     unit = np.stack([column(rows, name, 1)[:, 0] for name in ("ux", "uy", "uz")], axis=1)
     assert same_bits(at.unit_normals, unit) and np.allclose((unit**2).sum(axis=1), 1)

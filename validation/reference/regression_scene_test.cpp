@@ -11,7 +11,7 @@
 #include "exactff/methods.h"
 #include "exactff/receiver.h"
 #include "exactff/scene_files.h"
-#include "report/pictures.h"
+#include "report/report.h"
 #include "support/view_judge.h"
 
 namespace exactff::validation {

@@ -17,6 +17,7 @@
 #include <sstream>
 #include <thread>
 
+#include "files/parallel.h"
 #include "text/encoding.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -386,81 +387,10 @@ std::string vertical_line(double x, const std::string& style) {
   return "set arrow from " + at + ", graph 0 to " + at + ", graph 1 nohead front " + style + '\n';
 }
 
-// Plots the series that have a point to draw. block(name, points) returns the data of a series, and
-// command(name, series, points) its part of the plot command.
-template <class Block, class Command>
-std::string plot(const Axes& axes, const std::vector<Series>& series, const Block& block, const Command& command) {
-  std::string data, plots;
-  std::vector<std::string> titles;
-  std::vector<Points> drawn;
-  for (const Series& one : series) {
-    Points points = drawable(one.points, axes);
-    if (points.empty()) continue;
-    const std::string name = "$series" + std::to_string(drawn.size());
-    data += block(name, points);
-    plots += (plots.empty() ? "plot " : ", \\\n     ") + command(name, one, points);
-    titles.push_back(one.title);
-    drawn.push_back(std::move(points));
-  }
-  if (plots.empty()) return {};
-  std::string arrows;
-  for (const double at : drawn_marks(axes)) arrows += vertical_line(at, kMarkStyle);
-  for (const Mark& mark : axes.marks) {
-    if (arrows.empty()) break;
-    plots += std::string(", \\\n     keyentry with lines ") + kMarkStyle + " title " + text::gnuplot_string(mark.title);
-    titles.push_back(mark.title);
-  }
-  const Key key = key_of(titles);
-  return plot_head(key) + axis_commands(axes, key) + x_range(axes, drawn) + readable_ranges(axes, drawn) +
-         extra_commands(axes) + arrows + data + plots + '\n';
-}
-
 // The style of a mark over bars. Bars use the first colour.
 std::string mark_style(std::size_t i) {
   constexpr std::array<std::string_view, 4> kColours = {"#D55E00", "#CC79A7", "#009E73", "#E69F00"};
   return "lw 2 dt " + std::to_string(1 + i % 5) + " lc rgb '" + std::string(kColours[i % kColours.size()]) + '\'';
-}
-
-// Large sets are drawn as dots, and points that must not be overlooked among them as crosses. A dot is a very short
-// line with round ends: as a mark it would take three times the bytes.
-struct CloudLook {
-  bool dots = true;
-  std::string_view colour;
-};
-CloudLook cloud_look(int style) {
-  constexpr std::array<CloudLook, 4> kClouds = {
-      {{true, "#600072B2"}, {false, "#D55E00"}, {true, "#60009E73"}, {false, "#CC79A7"}}};
-  return kClouds[static_cast<std::size_t>(style - 1) % kClouds.size()];
-}
-
-// `width`: the range of the points in x.
-std::string cloud_command(const std::string& name, const Series& cloud, const Axes& axes, double width) {
-  const CloudLook look = cloud_look(cloud.style);
-  const std::string colour = " lc rgb '" + std::string(look.colour) + '\'';
-  const std::string title = title_of(cloud);
-  if (!look.dots) return name + " using 1:2 with points pt 2 ps 0.6 lw 1.5" + colour + title;
-  const std::string length = axes.log_x ? "$1*0.003" : text::shortest(0.0003 * width);
-  return name + " using 1:2:(" + length + "):(0) with vectors nohead lw 2.6" + colour +
-         " notitle, keyentry with points pt 7 ps 0.6" + colour + title;
-}
-
-// Four digits are finer than a plot's pixels.
-std::string four_digits(double value) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 4);
-  return {text.data(), end.ptr};
-}
-
-// A mark that coincides with the one before is drawn once.
-std::string cloud_block(const std::string& name, const Points& points) {
-  std::string text = name + " << END\n", last;
-  for (const auto& [x, y] : points) {
-    std::string mark = four_digits(x) + ' ' + four_digits(y) + '\n';
-    if (mark == last) continue;
-    text += mark;
-    last = std::move(mark);
-  }
-  return text + "END\n";
 }
 
 double largest_value(const Map& map) {
@@ -512,19 +442,29 @@ std::string colour_commands(const Map& map) {
 }  // namespace
 
 std::string line_plot(const Axes& axes, const std::vector<Series>& series) {
-  return plot(axes, series, data_block, [](const std::string& name, const Series& line, const Points&) {
-    return name + " using 1:2 " + style_of(line) + title_of(line);
-  });
-}
-
-std::string scatter_plot(const Axes& axes, const std::vector<Series>& series) {
-  const auto command = [&](const std::string& name, const Series& cloud, const Points& points) {
-    if (cloud.style > 0) return cloud_command(name, cloud, axes, points.back().first - points.front().first);
-    return name + " using 1:2 " + style_of(cloud) + title_of(cloud);
-  };
-  std::string script = plot(axes, series, cloud_block, command);
-  if (!script.empty()) script.insert(script.find(" dynamic"), " rounded");
-  return script;
+  std::string data, plots;
+  std::vector<std::string> titles;
+  std::vector<Points> drawn;
+  for (const Series& one : series) {
+    Points points = drawable(one.points, axes);
+    if (points.empty()) continue;
+    const std::string name = "$series" + std::to_string(drawn.size());
+    data += data_block(name, points);
+    plots += (plots.empty() ? "plot " : ", \\\n     ") + name + " using 1:2 " + style_of(one) + title_of(one);
+    titles.push_back(one.title);
+    drawn.push_back(std::move(points));
+  }
+  if (plots.empty()) return {};
+  std::string arrows;
+  for (const double at : drawn_marks(axes)) arrows += vertical_line(at, kMarkStyle);
+  for (const Mark& mark : axes.marks) {
+    if (arrows.empty()) break;
+    plots += std::string(", \\\n     keyentry with lines ") + kMarkStyle + " title " + text::gnuplot_string(mark.title);
+    titles.push_back(mark.title);
+  }
+  const Key key = key_of(titles);
+  return plot_head(key) + axis_commands(axes, key) + x_range(axes, drawn) + readable_ranges(axes, drawn) +
+         extra_commands(axes) + arrows + data + plots + '\n';
 }
 
 std::string bar_plot(const Axes& axes, const std::vector<Bar>& bars, const std::vector<Mark>& marks) {
@@ -579,8 +519,7 @@ std::string map_plot(const Map& map) {
   const double ratio = map.height / map.width;
   text += "set size ratio " + text::shortest(std::isfinite(ratio) ? std::clamp(ratio, 0.4, 1.6) : 1.0) + '\n';
   text += "set xrange [0:" + text::shortest(map.width) + "]\nset yrange [0:" + text::shortest(map.height) + "]\n";
-  text += "set xlabel " + text::gnuplot_string(map.x) + "\nset ylabel " + text::gnuplot_string(map.y) +
-          " offset 1.5,0\nset tics nomirror out\n";
+  text += "set xlabel 'u'\nset ylabel 'v' offset 1.5,0\nset tics nomirror out\n";
   text += colour_commands(map);
   text +=
       "set colorbox horizontal user origin graph 0, graph 1.06 size graph 1, graph 0.04\n"
@@ -591,6 +530,38 @@ std::string map_plot(const Map& map) {
       "set tmargin at screen 0.83\nset bmargin at screen 0.17\n";
   text += "$cells << END\n";
   return text + cells_of(map) + "END\nplot $cells using 1:2:3 with image pixels notitle\n";
+}
+
+namespace {
+
+constexpr const char* kNoGnuplot =
+    "There are no figures because gnuplot was not found. Install it (Debian: gnuplot-nox) and run the command again. "
+    "The tables are complete.";
+
+}  // namespace
+
+DrawnFigures draw_figures(std::vector<Figure> figures, const std::filesystem::path& scratch,
+                          std::vector<std::string>& messages, const Hooks& hooks) {
+  DrawnFigures drawn;
+  std::size_t done = 0;
+  for (Figure& figure : figures) {
+    files::require_not_cancelled(hooks);
+    const PlotResult plot = run_gnuplot(figure.script, scratch, hooks.cancelled);
+    if (hooks.progress) hooks.progress({"figures", ++done, figures.size()});
+    if (plot.outcome == PlotResult::Outcome::kNoProgram) {
+      drawn.none = kNoGnuplot;
+      messages.emplace_back(kNoGnuplot);
+      return drawn;
+    }
+    if (plot.outcome == PlotResult::Outcome::kFailed) {
+      messages.push_back("gnuplot could not draw '" + figure.title + "': " + plot.message);
+      drawn.left_out.push_back({"figure: " + figure.title, "gnuplot could not draw it"});
+      continue;
+    }
+    std::string svg = inline_svg(plot.svg, figure.id, figure.title);
+    drawn.figures.push_back({std::move(figure), std::move(svg)});
+  }
+  return drawn;
 }
 
 }  // namespace exactff::page

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "exactff/jobs.h"
+
 namespace exactff::page {
 
 struct PlotResult {
@@ -61,9 +63,6 @@ struct Axes {
 // nothing remains.
 [[nodiscard]] std::string line_plot(const Axes& axes, const std::vector<Series>& series);
 
-// Points only, for thousands of them: small and half transparent. Series of style 0 are drawn as lines.
-[[nodiscard]] std::string scatter_plot(const Axes& axes, const std::vector<Series>& series);
-
 // A bar of a histogram over the x axis.
 struct Bar {
   double low = 0.0;
@@ -93,9 +92,35 @@ struct Map {
   double largest = 0.0;  // the ends of a diverging scale are +-largest; larger magnitudes get the colours of the ends
   std::vector<MapCell> cells;             // others stay blank
   std::vector<std::string> classes = {};  // names of the values 0, 1, ... if the colours stand for classes
-  std::string x = "u", y = "v";           // names of the axes
 };
 
 [[nodiscard]] std::string map_plot(const Map& map);
+
+// --- figures ---
+
+// A figure of a report: a gnuplot script that contains its data.
+
+struct Figure {
+  std::string id;  // unique in the page
+  std::string title;
+  std::string caption;  // HTML
+  std::string script;   // plots one SVG to standard output
+  bool map = false;     // a false-colour map over the grid
+};
+
+struct DrawnFigure {
+  Figure figure;
+  std::string svg;
+};
+
+struct DrawnFigures {
+  std::vector<DrawnFigure> figures;
+  std::vector<LeftOut> left_out;  // figures that gnuplot could not draw
+  std::string none;               // why there are no figures; empty if there are
+};
+
+// Runs gnuplot, with its files in `scratch`. Adds notes for the user to `messages`.
+[[nodiscard]] DrawnFigures draw_figures(std::vector<Figure> figures, const std::filesystem::path& scratch,
+                                        std::vector<std::string>& messages, const Hooks& hooks);
 
 }  // namespace exactff::page

@@ -15,7 +15,6 @@
 #include "exactff/error.h"
 #include "exactff/methods.h"
 #include "exactff/models.h"
-#include "report/plan.h"
 #include "stress/stress.h"
 #include "text/names.h"
 #include "text/number_text.h"
@@ -326,8 +325,8 @@ std::string description_of(const CLI::Option& option, const TypeText& type) {
 
 std::string ellipsis(const OptionRow& row) { return row.most_values == kManyValues ? "..." : ""; }
 
-// What completion offers for a placeholder of an option or the name of a positional argument: EXPERIMENT, FAMILY,
-// METHOD, or SCENE (the generated ones, with their @).
+// What completion offers for a placeholder of an option or the name of a positional argument: FAMILY, METHOD, or SCENE
+// (the generated ones, with their @).
 std::vector<std::string> known_words(const std::string& kind) {
   std::vector<std::string> words;
   if (kind == "METHOD") {
@@ -335,10 +334,7 @@ std::vector<std::string> known_words(const std::string& kind) {
   } else if (kind == "SCENE") {
     for (const models::Model* model : models::all_models()) words.push_back('@' + std::string(model->name));
   } else if (kind == "FAMILY") {
-    for (const stress::FamilyInfo& family : stress::families()) words.emplace_back(family.name);
-  } else if (kind == "EXPERIMENT") {
-    words = report::experiment_names();
-    words.emplace_back("all");
+    for (const stress::Family& family : stress::all_families()) words.emplace_back(family.name);
   }
   return words;
 }

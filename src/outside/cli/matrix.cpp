@@ -363,7 +363,7 @@ matrix::Matrix compute(const MatrixArguments& args, MatrixJob& job) {
   const InterruptWatch watch("exactff: interrupted; nothing was written\n");
   LateNote note([&] { return words_on_time(job); });
   ProgressBar bar;
-  const Hooks hooks = with_note(note, Hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted});
+  const Hooks hooks = with_note(note, bar.hooks());
   const matrix::Request& request = job.request;
   matrix::Matrix result = matrix::compute(job.scene, request.from, request.to, request.options, hooks);
   bar.clear();
@@ -396,7 +396,7 @@ void print_balanced(const matrix::Matrix& matrix, const matrix::Balanced& balanc
 // Returns whether all of them have bounds.
 bool write_exchange(const MatrixArguments& args, const MatrixJob& job, const matrix::Matrix& matrix) {
   ProgressBar bar;
-  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const Hooks hooks = bar.hooks();
   const radiosity::Exchange found = radiosity::exchange(job.scene, matrix, job.request.options.threads, hooks);
   bar.clear();
   if (!args.exchange.empty()) table::write(table_of(job.scene, found, job.request.options.factors), args.exchange);
@@ -559,10 +559,7 @@ Command add_matrix(CLI::App& app) {
       "--plain", args->plain,
       "Print a line for each entry: FROM, TO, LOWER, UPPER, CLAIM, WAY, with tabs; by --balance also VALUE");
   add_outputs(*command, *args);
-  command
-      ->add_option("--threads", args->options.threads,
-                   "Number of threads (default: all); it does not affect the values")
-      ->check(CLI::Range(0, 1024));
+  flags::add_threads(*command, args->options.threads);
   return {command, [args] { return run(*args); }};
 }
 

@@ -13,9 +13,9 @@
 #include "cli/process.h"
 #include "exactff/render.h"
 #include "exactff/slips.h"
-#include "exactff/study.h"
 #include "kernel/vec.h"
 #include "scene/selections.h"
+#include "study/settings.h"
 #include "text/escape.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
@@ -187,16 +187,6 @@ void add_shares(const Scene& scene, const PointResult& point, const ExactSource&
                    [](const PointTerm::Share& a, const PointTerm::Share& b) { return a.alone > b.alone; });
 }
 
-AdaptiveOptions adaptive_options(const PointArguments& args) {
-  AdaptiveOptions options = args.adaptive_options;
-  options.pattern = *pattern_named(args.pattern);
-  options.variant = *variant_named(args.variant);
-  options.record_leaves = !args.svg.empty();  // for the drawing only: there can be millions
-  options.most_recorded_leaves = kMostDrawnLeaves;
-  options.most_leaves = kMostPointLeaves;
-  return options;
-}
-
 // Whether one sweep finds all that is printed, in less time than one patch after another. It says nothing of how a
 // value was found, and nothing about transparent patches.
 bool one_sweep_will_do(const PointArguments& args, const Scene& scene, const std::vector<Selection>& sources) {
@@ -220,7 +210,7 @@ FormFactor factor_in_view(const WholeView& seen, const Selection& source) {
 bool has_stacked(const PointArguments& args, const Scene& scene, const PointResult& point) {
   const auto is_stacked = [](const SeenPatch& patch) { return patch.share.value != patch.form_factor.value; };
   const auto some = [&](const WholeView& seen) { return std::ranges::any_of(seen.patches, is_stacked); };
-  return some(point.seen ? *point.seen : view(scene, point.receiver, {.precision_cap = args.precision_cap}));
+  return some(point.seen ? *point.seen : view(scene, point.receiver, {.precision_cap = args.precision.cap}));
 }
 
 std::optional<Vec3> direction_of(const PointArguments& args) {
@@ -239,25 +229,39 @@ FormFactor exact_value(const PointArguments& args, const Scene& scene, const Poi
                              .list_arcs = args.gradient && args.explain,
                              .vertices = args.vertices,
                              .along = direction_of(args),
-                             .digits = args.digits,
-                             .precision_cap = args.precision_cap};
+                             .digits = args.precision.digits,
+                             .precision_cap = args.precision.cap};
   return exact_form_factor(scene, point.receiver, source, options);
 }
 
 PointTerm compute_source(const PointArguments& args, const Scene& scene, const PointResult& point,
-                         const ExactSource& source, const std::optional<AdaptiveSolver>& sampler) {
+                         const ExactSource& source) {
   PointTerm result{.source = source.selection(), .emits = emits(scene, source.selection())};
   result.exact = exact_value(args, scene, point, source);
   const Rgb b = scene.source_radiosity(result.source);
   const Rgb& rho = point.reflectance;
-  result.largest_rho_b = std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b});
   const double f = result.exact.value;
   result.radiosity = {rho.r * b.r * f, rho.g * b.g * f, rho.b * b.b * f};
   if (args.explain) add_shares(scene, point, source, result);
-  if (sampler) {
-    result.adaptive = sampler->form_factor(point.receiver, result.source, result.largest_rho_b, adaptive_options(args));
-  }
   return result;
+}
+
+// Of all sources, by the method of --method.
+void add_estimates(const PointArguments& args, const Scene& scene, const std::vector<Selection>& sources,
+                   PointResult& result) {
+  const methods::Choice choice = methods::parse(args.method);
+  const study::PreparedMethod prepared(*choice.method, scene, sources);
+  study::ReadySetting setting(prepared, choice.settings);
+  methods::RecursionEvaluator* const recursion = setting.recursion();
+  if (recursion != nullptr) {
+    recursion->stop_at(kMostPointLeaves);
+    recursion->keep_results(!args.svg.empty(), kMostDrawnLeaves);  // for the drawing only: there can be millions
+  }
+  const std::span<const methods::Estimate> estimates = setting.look_from(result.receiver);
+  for (std::size_t s = 0; s < sources.size(); ++s) result.sources[s].estimate = estimates[s];
+  if (recursion == nullptr) return;
+  std::vector<AdaptiveResult> results = recursion->take_results();
+  for (std::size_t s = 0; s < results.size(); ++s) result.sources[s].adaptive = std::move(results[s]);
 }
 
 void add(Rgb& sum, const Rgb& part) { sum = {sum.r + part.r, sum.g + part.g, sum.b + part.b}; }
@@ -287,19 +291,19 @@ PointResult compute_point(const PointArguments& args, const Scene& scene) {
   PointResult result{.receiver = args.receiver.make(scene),
                      .measure = args.measure.measure(args.up, args.receiver.sphere)};
   result.reflectance = make_reflectance(args, scene, result.receiver);
-  std::optional<AdaptiveSolver> sampler;
-  if (args.adaptive) sampler.emplace(scene);
   const std::vector<Selection> sources = make_sources(args, scene);
   if (!args.svg.empty()) require_one(sources, args.svg);
   result.every_patch = flags::names_all(scene, args.sources);
   if (one_sweep_will_do(args, scene, sources)) {
-    result.seen = view(scene, result.receiver,
-                       {.measure = result.measure, .digits = args.digits, .precision_cap = args.precision_cap});
+    result.seen =
+        view(scene, result.receiver,
+             {.measure = result.measure, .digits = args.precision.digits, .precision_cap = args.precision.cap});
   }
   for (const Selection& selection : sources) {
     const ExactSource source(scene, selection);
-    result.sources.push_back(compute_source(args, scene, result, source, sampler));
+    result.sources.push_back(compute_source(args, scene, result, source));
   }
+  if (!args.method.empty()) add_estimates(args, scene, sources, result);
   add_up(result);
   result.stacked = result.every_patch && result.measure.is_form_factor() && has_stacked(args, scene, result);
   return result;
@@ -333,8 +337,6 @@ void warn_of_face_nearby(const Scene& scene, const PointResult& point) {
 
 // --- flags and warnings ---
 
-constexpr int kMostDigits = 10000;
-
 void warn_if_flipped(const Scene& scene, const PointResult& point) {
   for (const PointTerm& one : point.sources) {
     if (!behind_every_face(one.exact)) continue;
@@ -347,8 +349,11 @@ void warn_if_flipped(const Scene& scene, const PointResult& point) {
 
 void warn_of_missing_decimals(const PointArguments& args, const Scene& scene, const PointResult& point) {
   for (const PointTerm& one : point.sources) {
-    if (args.digits == 0 || one.exact.status == Status::kZero || one.exact.enclosure.decimals(args.digits)) continue;
-    std::cerr << "exactff: warning: " << args.digits << " significant digits of '" << shown_name(scene, one.source)
+    if (args.precision.digits == 0 || one.exact.status == Status::kZero ||
+        one.exact.enclosure.decimals(args.precision.digits))
+      continue;
+    std::cerr << "exactff: warning: " << args.precision.digits << " significant digits of '"
+              << shown_name(scene, one.source)
               << "' are not certified (the value may be a rounding tie, or --precision-cap is too low); the double is "
                  "printed instead\n";
   }
@@ -359,8 +364,7 @@ void warn_of_stopped_recursion(const Scene& scene, const PointResult& point) {
     if (!one.adaptive || one.adaptive->leaves < kMostPointLeaves) continue;
     std::cerr << "exactff: warning: the adaptive recursion on '" << shown_name(scene, one.source) << "' stopped at "
               << one.adaptive->leaves
-              << " leaves (its estimate is less accurate than the tolerance requires); use a larger "
-              << "--eps-b\n";
+              << " leaves (its estimate is less accurate than the tolerance requires); use a larger eps_B\n";
   }
 }
 
@@ -370,18 +374,6 @@ std::vector<std::string> given(const CLI::App& command, std::initializer_list<co
     if (command.get_option(flag)->count() > 0) found.emplace_back(flag);
   }
   return found;
-}
-
-void refuse_settings_without_adaptive(const CLI::App& command, const PointArguments& args) {
-  if (args.adaptive) return;
-  const std::vector<std::string> idle =
-      given(command, {"--eps-b", "--eps-a", "--rays", "--seed", "--pattern", "--variant"});
-  if (idle.empty()) return;
-  const bool one = idle.size() == 1;
-  text::refuse(text::enumerate(idle) + (one ? " is" : " are") + " given without --adaptive",
-               std::string(one ? "it is a setting" : "they are settings") +
-                   " of the ray-sampled adaptive algorithm, which does not run",
-               std::string("add --adaptive, or remove ") + (one ? "it" : "them"));
 }
 
 void refuse_along_without_gradient(const PointArguments& args) {
@@ -398,7 +390,7 @@ void refuse_along_without_gradient(const PointArguments& args) {
 // What is known of the form factor alone.
 void refuse_with_another_measure(const CLI::App& command, const PointArguments& args) {
   if (args.measure.name == "form-factor" && !args.receiver.sphere) return;
-  std::vector<std::string> idle = given(command, {"--gradient", "--adaptive"});
+  std::vector<std::string> idle = given(command, {"--gradient", "--method"});
   if (args.receiver.sphere) {
     for (std::string& flag : given(command, {"--svg", "--reflectance"})) idle.push_back(std::move(flag));
   }
@@ -410,24 +402,13 @@ void refuse_with_another_measure(const CLI::App& command, const PointArguments& 
 
 // These change nothing that is printed. A script may give them all the same.
 void warn_of_idle_options(const CLI::App& command, const PointArguments& args) {
-  const auto warn = [&](const std::vector<std::string>& idle, const std::string& why) {
-    if (idle.empty()) return;
-    std::cerr << "exactff: warning: " << text::enumerate(idle) << (idle.size() == 1 ? " has" : " have")
-              << " no effect here (" << why << ")\n";
-  };
-  if (args.plain) {
-    const bool leaves_are_drawn = args.adaptive && !args.svg.empty();
-    std::vector<std::string> idle =
-        given(command, {"--fraction", "--exact-fraction", "--explain", "--along", "--vertices"});
-    for (const std::string& flag : given(command, {"--reflectance", "--adaptive"})) {
-      if (!leaves_are_drawn) idle.push_back(flag);
-    }
-    warn(idle, "--plain prints the value alone; remove --plain, or use --json");
-  }
-  if (args.pattern == "centre") warn(given(command, {"--rays"}), "the pattern centre casts one ray per leaf");
-  if (args.pattern == "centre" || args.pattern == "regular") {
-    warn(given(command, {"--seed"}), "the pattern " + args.pattern + " uses no random numbers");
-  }
+  if (!args.plain) return;
+  std::vector<std::string> idle =
+      given(command, {"--fraction", "--exact-fraction", "--explain", "--along", "--vertices", "--reflectance"});
+  if (!args.method.empty() && args.svg.empty()) idle.emplace_back("--method");  // else its leaves are drawn
+  if (idle.empty()) return;
+  std::cerr << "exactff: warning: " << text::enumerate(idle) << (idle.size() == 1 ? " has" : " have")
+            << " no effect here (--plain prints the value alone; remove --plain, or use --json)\n";
 }
 
 // A derivative whose ball contains 0 is a result.
@@ -444,7 +425,6 @@ bool is_certified(const FormFactor& f) {
 }
 
 int run(const CLI::App& command, const PointArguments& args) {
-  refuse_settings_without_adaptive(command, args);
   refuse_along_without_gradient(args);
   refuse_with_another_measure(command, args);
   warn_of_idle_options(command, args);
@@ -460,9 +440,9 @@ int run(const CLI::App& command, const PointArguments& args) {
   warn_of_stopped_recursion(scene, point);
   if (!args.svg.empty()) draw_point(args, scene, point);
   if (args.plain) {
-    std::cout << (args.gradient     ? plain_gradient(point.sources.front().exact)
-                  : args.digits > 0 ? value_text(point.sources.front().exact, args.digits)
-                                    : plain_value(point.sources.front().exact))
+    std::cout << (args.gradient               ? plain_gradient(point.sources.front().exact)
+                  : args.precision.digits > 0 ? value_text(point.sources.front().exact, args.precision.digits)
+                                              : plain_value(point.sources.front().exact))
               << '\n';
   } else if (args.json) {
     print_point_json(args, scene, point);
@@ -496,14 +476,10 @@ void add_receiver_flags(CLI::App& app, PointArguments& args) {
 }
 
 void add_output_flags(CLI::App& app, PointArguments& args) {
-  app.add_option("--digits", args.digits, "Number of significant digits to print, each of them certified")
-      ->check(CLI::Range(1, kMostDigits));
+  args.precision.add_to(app);
   args.engine.add_to(app);
   args.measure.add_to(app);
   flags::add_vector_option(app, "--up", args.up, "Of --measure overcast: where the zenith is (default: 0 0 1)");
-  app.add_option("--precision-cap", args.precision_cap, "Largest precision, in bits, of the contour integral")
-      ->check(CLI::Range(32, 1 << 24))
-      ->capture_default_str();
   app.add_flag("--fraction", args.fraction, "Also print the visible fraction of the source");
   app.add_flag("--exact-fraction", args.exact_fraction,
                "Also print the visible fractions as exact rationals, one per plane of the source");
@@ -526,37 +502,9 @@ void add_output_flags(CLI::App& app, PointArguments& args) {
   flags::add_written(app, "--svg", args.svg,
                      "Draw the source in its plane, with the shadows of the occluders and the visible region",
                      flags::Format::kSvg);
-}
-
-void add_adaptive_flags(CLI::App& app, PointArguments& args) {
-  AdaptiveOptions& options = args.adaptive_options;
-  app.add_flag("--adaptive", args.adaptive,
-               "Also run Tampieri's ray-sampled adaptive algorithm; --svg then shows its leaves, the parts that it "
-               "does not split further");
-  app.add_option("--eps-b", options.eps_b, "Its tolerance eps_B, a radiosity for each leaf")
-      ->capture_default_str()
-      ->check(flags::is_not_negative);
-  app.add_option("--eps-a", options.eps_a, "Its tolerance eps_A, the area below which nothing is split")
-      ->capture_default_str()
-      ->check(flags::is_not_negative);
-  app.add_option("--rays", options.rays, "Its number of shadow rays per undecided leaf")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1 << 20));
-  app.add_option("--seed", options.seed, "Its random seed")->capture_default_str();
-  flags::add_value(app, "--pattern", args.pattern, "NAME",
-                   "Where in a leaf its rays end: jittered, centre, regular or low-discrepancy")
-      ->capture_default_str()
-      ->check([](const std::string& name) {
-        return pattern_named(name)
-                   ? ""
-                   : "there is no pattern " + name + "; choose jittered, centre, regular or low-discrepancy";
-      });
-  flags::add_value(app, "--variant", args.variant, "NAME",
-                   "literal: the algorithm as printed in 1992; mended: with its faults corrected")
-      ->capture_default_str()
-      ->check([](const std::string& name) {
-        return variant_named(name) ? "" : "there is no variant " + name + "; choose mended or literal";
-      });
+  flags::add_value(app, "--method", args.method, "METHOD",
+                   "Also compute the value by this method, such as adaptive:eps_B=0.01,rays=16. With adaptive, --svg "
+                   "shows its leaves, the parts that it does not split further");
 }
 
 }  // namespace
@@ -576,7 +524,6 @@ Command add_point(CLI::App& app) {
   args->scene.add_to(*command);
   add_receiver_flags(*command, *args);
   add_output_flags(*command, *args);
-  add_adaptive_flags(*command, *args);
   return {command, [command, args] { return run(*command, *args); }};
 }
 

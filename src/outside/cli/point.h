@@ -10,6 +10,7 @@
 
 #include "exactff/adaptive.h"
 #include "exactff/exact.h"
+#include "exactff/methods.h"
 #include "exactff/receiver.h"
 #include "exactff/view.h"
 #include "flags/scene.h"
@@ -55,8 +56,7 @@ struct PointArguments {
   OneReceiver receiver;
   std::vector<std::string> sources;
   std::vector<double> reflectance;
-  int digits = 0;
-  int precision_cap = ExactOptions{}.precision_cap;
+  flags::PrecisionArguments precision;
   flags::EngineArgument engine;
   flags::MeasureArgument measure;
   flags::ThreeNumbers up;
@@ -69,10 +69,7 @@ struct PointArguments {
   bool json = false;
   bool explain = false;
   std::string svg;
-  bool adaptive = false;
-  AdaptiveOptions adaptive_options;
-  std::string pattern = "jittered";
-  std::string variant = "mended";
+  std::string method;
 };
 
 // The result for one source.
@@ -87,9 +84,9 @@ struct PointTerm {
   FormFactor exact = {};
   std::optional<double> unoccluded = {};
   std::vector<Share> shares = {};
-  std::optional<AdaptiveResult> adaptive = {};
-  double largest_rho_b = 0.0;
-  Rgb radiosity = {};  // rho B F, an estimate in double
+  std::optional<methods::Estimate> estimate = {};  // by the method of --method
+  std::optional<AdaptiveResult> adaptive = {};     // of it, if it is a recursion; with the leaves to draw
+  Rgb radiosity = {};                              // rho B F, an estimate in double
 };
 
 struct PointResult {

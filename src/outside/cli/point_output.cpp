@@ -7,7 +7,7 @@
 #include "cli/output.h"
 #include "cli/point.h"
 #include "exactff/version.h"
-#include "report/pictures.h"
+#include "report/report.h"
 #include "text/json_document.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
@@ -161,10 +161,13 @@ void print_vertices(const Scene& scene, const Gradient& gradient) {
   }
 }
 
-void print_adaptive(const PointTerm& one) {
-  const AdaptiveResult& a = *one.adaptive;
-  std::cout << "  ray-sampled adaptive: " << shortest(a.form_factor) << " (error "
-            << shortest(a.form_factor - one.exact.value) << ", " << a.leaves << " leaves, " << a.rays << " rays)\n";
+void print_estimate(const PointArguments& args, const PointTerm& one) {
+  std::cout << "  " << args.method << ": " << shortest(one.estimate->form_factor) << " (error "
+            << shortest(one.estimate->form_factor - one.exact.value);
+  for (const auto& [name, count] : one.estimate->counters.list()) {
+    if (count > 0) std::cout << ", " << name << ' ' << count;
+  }
+  std::cout << ")\n";
 }
 
 // "form factor", padded as the words below it, or a longer one of another measure.
@@ -172,8 +175,8 @@ std::string label_of(const PointResult& point) { return flags::words_of(point.me
 
 void print_source(const PointArguments& args, const Scene& scene, const PointResult& point, const PointTerm& one) {
   std::cout << "source " << shown_name(scene, one.source) << '\n'
-            << "  " << label_of(point) << value_text(one.exact, args.digits) << "  (" << to_string(one.exact.status)
-            << ")\n"
+            << "  " << label_of(point) << value_text(one.exact, args.precision.digits) << "  ("
+            << to_string(one.exact.status) << ")\n"
             << "  enclosure    [" << shortest(one.exact.lower) << ", " << shortest(one.exact.upper) << "]\n";
   if (one.exact.visible_fraction) {
     std::cout << "  visible      " << shortest(*one.exact.visible_fraction) << "  ("
@@ -184,7 +187,7 @@ void print_source(const PointArguments& args, const Scene& scene, const PointRes
   if (args.vertices) print_vertices(scene, *one.exact.gradient);
   if (!one.emits && point.measure.is_form_factor())
     std::cout << "  emits        nothing (Ke 0), so it counts with a radiosity of 1\n";
-  if (one.adaptive) print_adaptive(one);
+  if (one.estimate) print_estimate(args, one);
   if (!args.explain) return;
   print_stages(scene, one);
   print_shares(scene, one);
@@ -201,7 +204,7 @@ std::optional<std::string> sum_text(const Enclosure& sum, int digits) {
 }
 
 void print_sum(const PointArguments& args, const PointResult& point, const std::string& title, const Enclosure& sum) {
-  std::cout << title << "\n  " << label_of(point) << sum_text(sum, args.digits).value_or("between the bounds")
+  std::cout << title << "\n  " << label_of(point) << sum_text(sum, args.precision.digits).value_or("between the bounds")
             << "\n  enclosure    [" << shortest(sum.lower()) << ", " << shortest(sum.upper()) << "]\n";
 }
 
@@ -255,24 +258,24 @@ void print_patch_table(const PointArguments& args, const Scene& scene, const Poi
   table.add_column(flags::words_of(point.measure));
   table.add_column("status");
   if (visible) table.add_column("visible");
-  if (args.adaptive) table.add_column("ray-sampled adaptive");
+  if (!args.method.empty()) table.add_column(args.method);
   table.add_column("emits");
   for (const PointTerm& one : point.sources) {
-    std::vector<std::string> cells = {scene.name_of(one.source), value_text(one.exact, args.digits),
+    std::vector<std::string> cells = {scene.name_of(one.source), value_text(one.exact, args.precision.digits),
                                       std::string(to_string(one.exact.status))};
     if (visible) cells.push_back(shortest(one.exact.visible_fraction.value_or(0.0)));
-    if (args.adaptive) cells.push_back(shortest(one.adaptive->form_factor));
+    if (one.estimate) cells.push_back(shortest(one.estimate->form_factor));
     cells.emplace_back(one.emits ? "yes" : "-");
     table.add_row(std::move(cells));
   }
   table.print(std::cout);
-  std::cout << "\nsum           " << sum_words(point.sum, args.digits) << "  (of "
+  std::cout << "\nsum           " << sum_words(point.sum, args.precision.digits) << "  (of "
             << text::counted(point.sources.size(), "patch", "patches") << ", added as balls)\n";
   if (!point.measure.is_form_factor()) return;
-  std::cout << "missing to 1  " << missing_words(missing_to_one(point.sum), missing_meaning(scene, point), args.digits)
-            << '\n';
+  std::cout << "missing to 1  "
+            << missing_words(missing_to_one(point.sum), missing_meaning(scene, point), args.precision.digits) << '\n';
   if (point.is_mixed()) {
-    std::cout << "emitters      " << sum_words(point.sum_of_emitters, args.digits) << "  (the sum over the "
+    std::cout << "emitters      " << sum_words(point.sum_of_emitters, args.precision.digits) << "  (the sum over the "
               << text::counted(point.emitters, "patch", "patches")
               << (point.emitters == 1 ? " that emits)\n" : " that emit)\n");
   }
@@ -306,13 +309,11 @@ nlohmann::ordered_json plane_json(const Scene& scene, const PlaneRecord& plane) 
   return json;
 }
 
-nlohmann::ordered_json adaptive_json(const AdaptiveResult& a) {
-  nlohmann::ordered_json reasons;
-  for (std::size_t i = 0; i < kLeafReasonCount; ++i) {
-    reasons[std::string(to_string(static_cast<LeafReason>(i)))] = a.leaves_by_reason[i];
-  }
-  return {{"form_factor", a.form_factor}, {"leaves", a.leaves},          {"rays", a.rays},
-          {"shaft_tests", a.shaft_tests}, {"leaves_by_reason", reasons}, {"leaves_by_depth", a.leaves_by_depth}};
+nlohmann::ordered_json estimate_json(const PointArguments& args, const PointTerm& one) {
+  nlohmann::ordered_json work = nlohmann::ordered_json::object();
+  for (const auto& [name, count] : one.estimate->counters.list()) work[std::string(name)] = count;
+  if (one.adaptive) work["leaves by depth"] = one.adaptive->leaves_by_depth;
+  return {{"method", methods::parse(args.method).text()}, {"form_factor", one.estimate->form_factor}, {"work", work}};
 }
 
 nlohmann::ordered_json derivative_json(const Derivative& d) {
@@ -372,7 +373,7 @@ nlohmann::ordered_json source_json(const PointArguments& args, const Scene& scen
   if (point.measure.is_form_factor()) json["radiosity"] = numbers_json(one.radiosity);
   json["ball"] = ball_json(one.exact.enclosure);
   json["bits"] = one.exact.precision_bits;
-  if (args.digits > 0) json["decimals"] = value_text(one.exact, args.digits);
+  if (args.precision.digits > 0) json["decimals"] = value_text(one.exact, args.precision.digits);
   if (one.exact.visible_fraction) {
     json["visible_fraction"] = *one.exact.visible_fraction;
     json["visible_part"] = to_string(*one.exact.visible_part);
@@ -389,7 +390,7 @@ nlohmann::ordered_json source_json(const PointArguments& args, const Scene& scen
   }
   json["planes"] = nlohmann::ordered_json::array();
   for (const PlaneRecord& plane : one.exact.planes) json["planes"].push_back(plane_json(scene, plane));
-  if (one.adaptive) json["adaptive"] = adaptive_json(*one.adaptive);
+  if (one.estimate) json["estimate"] = estimate_json(args, one);
   return json;
 }
 

@@ -127,6 +127,10 @@ void ProgressBar::show(const Progress& progress) {
   draw(progress, std::chrono::duration<double>(now - started_).count());
 }
 
+Hooks ProgressBar::hooks() {
+  return {[this](const Progress& progress) { show(progress); }, is_interrupted};
+}
+
 void ProgressBar::clear() const {
   if (on_terminal_ && drawn_ != Clock::time_point{}) std::cerr << "\r\033[K" << std::flush;
 }

@@ -45,6 +45,8 @@ class ProgressBar {
 
   void show(const Progress& progress);
   void clear() const;
+  // Show the progress of work here, and cancel it after a signal.
+  [[nodiscard]] Hooks hooks();
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -92,7 +94,7 @@ void leave_if_interrupted();              // throws Cancelled
 template <class Prepare>
 auto with_progress(const Prepare& prepare) {
   ProgressBar bar;
-  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const Hooks hooks = bar.hooks();
   const HooksOfThread shown(hooks);
   auto prepared = prepare();
   leave_if_interrupted();

@@ -503,7 +503,7 @@ int run_temperatures(const RadiosityArguments& args, const Scene& scene) {
   const radiosity::ThermalConditions conditions = radiosity::read_conditions(scene, args.temperatures);
   ViewFactorOptions options = args.options.factors;
   ProgressBar bar;
-  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const Hooks hooks = bar.hooks();
   matrix::Matrix matrix =
       args.matrix.empty()
           ? matrix::compute(scene, patches, patches,
@@ -542,7 +542,7 @@ int run(const RadiosityArguments& given) {
   require_light(args, scene, patches);
   if (const auto overlaps = problem_of_overlaps(scene, patches)) print_warnings(std::span(&*overlaps, 1));
   ProgressBar bar;
-  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const Hooks hooks = bar.hooks();
   std::optional<matrix::Matrix> matrix = view_factors_of(args, scene, patches, hooks, args.options.factors);
   if (!matrix) return exit_code_of_interruption();
   const Solution solution = solve_or_tell_what_is_kept(args, scene, *matrix, hooks);
@@ -620,10 +620,7 @@ Command add_radiosity(CLI::App& app) {
   for (const char* other : {"--width", "--json", "--plain", "--resume"}) {
     temperatures->excludes(command->get_option(other));
   }
-  command
-      ->add_option("--threads", args->options.threads,
-                   "Number of threads (default: all); it does not affect the values")
-      ->check(CLI::Range(0, 1024));
+  flags::add_threads(*command, args->options.threads);
   return {command, [args] { return run(*args); }};
 }
 

@@ -430,7 +430,7 @@ int run(const RenderArguments& args) {
   Kept kept(args, render::identity_of(request, against.method));
   const InterruptWatch watch("exactff: interrupted; " + kept.words());
   ProgressBar bar;
-  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const Hooks hooks = bar.hooks();
   Rendered result;
   try {
     result = render_pictures(request, against, hooks, kept.journal());

@@ -34,10 +34,9 @@ constexpr const char* kCompareFooter =
     "others).\n"
     "A METHOD is a name with settings; one setting may have several values: hemicube:resolution=64|128|256. Names:\n"
     "exact, adaptive, adaptive-exact-visibility, hemicube, nettle, wallace, area-sampling.\n"
-    "Instead of SCENE, a .study file describes several scenes, one per line with the same flags, and experiments:\n"
+    "Instead of SCENE, a .study file describes several scenes, one per line with the same flags:\n"
     "  title Rooms\n"
     "  scene cornell_box.obj --on floor --grid 32x32 --title \"Cornell box\"\n"
-    "  experiment karkanis-times\n"
     "Settings that cannot affect a scene are left out, and the report says which and why.\n"
     "Times are measured after all values, on one thread.\n"
     "DIR appears only when it is complete. Until then, finished values are kept in DIR.part. After an interruption,\n"
@@ -46,13 +45,10 @@ constexpr const char* kCompareFooter =
     "\n"
     "Examples:\n"
     "  exactff compare data/scenes/cornell_box.obj --on floor --grid 32x32 -o cornell-report\n"
-    "  exactff compare data/studies/default.study --abridged -o report\n"
-    "  exactff compare --experiment meshing -o cells";
+    "  exactff compare data/studies/quick.study -o report";
 
 struct CompareArguments : KeptRun {
   flags::ComparisonArguments scene;
-  std::vector<std::string> experiments;
-  bool abridged = false;
   int threads = 0;
   std::string folder;
   FurtherFiles further;
@@ -60,15 +56,9 @@ struct CompareArguments : KeptRun {
 
 std::string command_line(const CompareArguments& args) {
   std::string line = "exactff compare";
-  if (const std::string& path = args.scene.scene.path; !path.empty()) line += ' ' + text::shell_word(path);
+  line += ' ' + text::shell_word(args.scene.scene.path);
   line += flags::command_words(*args.scene.scene.command, {"--resume", "--force", "--output"});
   return line + " -o " + text::shell_word(args.folder);
-}
-
-// Those that describe a scene.
-std::string scene_flags(const CompareArguments& args) {
-  return flags::command_words(*args.scene.scene.command,
-                              {"--experiment", "--abridged", "--threads", "--output", "--vtk", "--resume", "--force"});
 }
 
 // A finished folder holds hours of work, as a truth file does. Checked before anything that takes time.
@@ -114,41 +104,24 @@ bool is_done(const CompareArguments& args, const report::Plan& plan) {
 }
 
 report::Plan plan_of(const CompareArguments& args) {
-  const report::Effort effort{args.abridged, args.threads};
   const std::string& path = args.scene.scene.path;
+  const std::string flags =
+      flags::command_words(*args.scene.scene.command, {"--threads", "--output", "--vtk", "--resume", "--force"});
   report::Plan plan;
-  if (path.empty()) {
-    if (args.experiments.empty()) {
-      text::refuse("SCENE is required", "there is nothing to compare",
-                   "name a scene, a .study file or an --experiment");
-    }
-    const std::string flags = scene_flags(args);
-    if (!flags.empty()) {
-      text::refuse("flags of a scene are given without a scene:" + flags, "an experiment has scenes of its own",
-                   "name the scene, or remove the flags");
-    }
-    plan.title = "Experiments";
-    plan.effort = effort;
-  } else if (flags::is_study_file(path)) {
-    const std::string flags = scene_flags(args);
+  if (flags::is_study_file(path)) {
     if (!flags.empty()) {
       text::refuse("flags of a scene are given with a study file:" + flags,
                    "a study file has several scenes, each with its own flags",
                    "write them on the scene's line in the file");
     }
-    plan = flags::read_study_file(path, effort);
+    plan = flags::read_study_file(path, args.threads);
+    plan.flags = text::read_text_file(path, "a study file");
   } else {
-    if (args.scene.unless_abridged) {
-      text::refuse("--unless-abridged has no effect on the command line", "it marks a scene in a study file",
-                   "remove it, or write the scene into a .study file");
-    }
-    flags::Comparison one = flags::comparison_of(args.scene, effort.abridged, effort.threads);
-    plan.effort = effort;
+    flags::Comparison one = flags::comparison_of(args.scene, args.threads);
     plan.add_scene(one.title, std::move(one.scene), std::move(one.request), std::move(one.warnings));
-    if (args.experiments.empty()) plan.scenes.front().name.clear();
-    if (!args.experiments.empty()) plan.title = one.title;
+    plan.scenes.front().name.clear();
+    plan.flags = flags;
   }
-  plan.add_experiments(args.experiments);
   plan.command_line = command_line(args);
   plan.vtk = args.further.vtk;
   return plan;
@@ -202,7 +175,7 @@ int run(const CLI::App& command, const CompareArguments& args) {
                            "; to continue, run the same command with --resume\n";
   const InterruptWatch watch("exactff: interrupted; " + kept);
   ProgressBar bar;
-  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const Hooks hooks = bar.hooks();
   const std::size_t resumed = journal.size();
   try {
     const report::Outcome outcome = report::carry_out(plan, args.folder, journal, hooks);
@@ -224,12 +197,6 @@ int run(const CLI::App& command, const CompareArguments& args) {
   return say_where(args);
 }
 
-std::string experiment_list() {
-  std::string names;
-  for (const std::string& name : report::experiment_names()) names += name + ", ";
-  return names + "or all, which leaves out meshing-fine";
-}
-
 }  // namespace
 
 Command add_compare(CLI::App& app) {
@@ -237,17 +204,9 @@ Command add_compare(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("compare", "Compare approximate methods with the exact values: error and run time");
   args->scene.add_to(*command);
-  command->get_option("SCENE")
-      ->description(
-          "Scene file (OBJ, glTF, PLY, STL, OFF, View3D), @MODEL for a generated scene, or a .study file with several "
-          "scenes; not needed with --experiment")
-      ->required(false);
-  flags::add_value(*command, "--experiment", args->experiments, "EXPERIMENT",
-                   "Add an experiment to the report; can be repeated: " + experiment_list())
-      ->delimiter(',')
-      ->take_all();
-  command->add_flag("--abridged", args->abridged,
-                    "Run a short version: grids of at most 12x12, fewer settings and receivers, short experiments");
+  command->get_option("SCENE")->description(
+      "Scene file (OBJ, glTF, PLY, STL, OFF, View3D), @MODEL for a generated scene, or a .study file with several "
+      "scenes");
   flags::add_threads(*command, args->threads);
   flags::add_value(*command, "-o,--output", args->folder, "DIR", "Folder for the report and the tables")
       ->required()
@@ -269,43 +228,41 @@ constexpr const char* kStressFooter =
     "--family, all families are run; --list prints their names. A table shows the largest stiffness up to which each\n"
     "method's error stays below 1e-3, 1e-6 and 1e-12; Tampieri's algorithm is judged by the tolerance that it was\n"
     "given, 1e-4 of the unoccluded form factor. With --all, a table for each family shows the relative errors at\n"
-    "each stiffness. With -o, all tables are written as CSV, with a report and figures. After an interruption\n"
-    "(Ctrl-C), the finished families are shown, and with -o they are written to DIR.part.\n"
+    "each stiffness. With -o, all values are written as a table. After an interruption (Ctrl-C), the finished\n"
+    "families are shown, and no file is written.\n"
     "acos, atan2, atan2-difference: Tampieri's contour formula, Eq. (4), in double over the exact visible region.\n"
     "tampieri, tampieri-literal: his ray-sampled algorithm, mended and as printed.\n"
     "Use --threads 1 for the most reliable times.\n"
     "The exit code is 1 if an exact value differs from the independent true value rounded to a double.\n"
     "\n"
     "Example:\n"
-    "  exactff stress -o stress-report";
+    "  exactff stress -o stress.csv";
 
 struct StressArguments {
   std::vector<std::string> families;
   int threads = 0;
-  std::string folder;
+  std::string file;
   bool list = false;
   bool all = false;
 };
 
 void print_list() {
-  TextTable table;
-  table.add_columns({"family", "stiffness", "what happens"});
-  for (const stress::FamilyInfo& family : stress::families()) {
-    table.add_row({std::string(family.name), std::string(family.stiffness), std::string(family.title)});
+  for (const stress::Family& family : stress::all_families()) {
+    std::cout << family.name << ": " << family.title << "; stiffness: " << family.stiffness << "\n  " << family.about
+              << '\n';
   }
-  table.print(std::cout);
 }
 
 void print_family(const stress::FamilyResult& result) {
-  std::cout << result.family.title << " (" << result.family.name << ")\n"
-            << "stiffness: " << result.family.stiffness << "; truth: " << to_string(result.family.evidence) << '\n';
+  std::cout << result.family->title << " (" << result.family->name << ")\n"
+            << "stiffness: " << result.family->stiffness << "; truth: " << to_string(result.family->evidence) << '\n';
   TextTable table;
   table.add_columns({"stiffness", "form factor", "exact bits", "exact time"}, Align::kRight);
   for (stress::Method method : stress::kMethods) table.add_column(std::string(short_name_of(method)), Align::kRight);
   for (const stress::Row& row : result.rows) {
     const stress::Answer& exact = row.of(stress::Method::kExact);
     std::vector<std::string> cells = {stress::stiffness_text(row.stiffness), text::rounded(exact.value, 6),
-                                      std::to_string(row.precision_bits), text::duration(exact.seconds)};
+                                      std::to_string(row.precision_bits), text::duration(row.exact_seconds)};
     for (stress::Method method : stress::kMethods) cells.push_back(stress::error_text(row.of(method)));
     if (!row.agrees) cells.back() += "  DISAGREES with the truth";
     table.add_row(std::move(cells));
@@ -322,20 +279,13 @@ void print_stress_summary(const stress::Report& report) {
   table.add_column("ends at", Align::kRight);
   for (stress::Method method : stress::kMethods) table.add_column(std::string(short_name_of(method)));
   for (const stress::FamilyResult& family : report.families) {
-    std::vector<std::string> cells = {std::string(family.family.name),
+    std::vector<std::string> cells = {std::string(family.family->name),
                                       stress::stiffness_text(family.rows.back().stiffness)};
     for (stress::Method method : stress::kMethods) cells.push_back(stress::reaches_text(family, method));
     table.add_row(std::move(cells));
   }
   table.print(std::cout);
   std::cout << '\n';
-}
-
-std::string command_line(const StressArguments& args) {
-  std::string line = "exactff stress";
-  for (std::size_t i = 0; i < args.families.size(); ++i) line += (i == 0 ? " --family " : ",") + args.families[i];
-  if (args.threads > 0) line += " --threads " + std::to_string(args.threads);
-  return line + " -o " + text::shell_word(args.folder);
 }
 
 void print(const StressArguments& args, const stress::Report& report) {
@@ -347,52 +297,34 @@ void print(const StressArguments& args, const stress::Report& report) {
   if (!args.all) std::cout << "--all prints every error.\n";
 }
 
-std::string page_in(const std::filesystem::path& folder) { return text::printable((folder / "report.html").string()); }
-
-// Leaves what is finished in DIR.part, and says so.
-int end_early(const StressArguments& args, const stress::Report& report) {
-  const std::size_t whole = report.families.size() + report.unfinished.size();
-  if (!args.folder.empty()) stress::write_part(report, args.folder);
-  print(args, report);
-  check_output(std::cout);
-  std::cerr << "exactff: interrupted; finished families: " << report.families.size() << " of " << whole;
-  if (!args.folder.empty()) std::cerr << ", kept in " << page_in(stress::part_of(args.folder));
-  std::cerr << "; --family runs single ones\n";
-  return 128 + interrupting_signal();
-}
-
 int run(const StressArguments& args) {
   if (args.list) {
     print_list();
     check_output(std::cout);
     return 0;
   }
-  if (!args.folder.empty()) check_output_folder(args.folder);
+  if (!args.file.empty()) require_table_file(args.file);
   const std::string given_up = "exactff: interrupted; no family is finished, and nothing was written\n";
   const InterruptWatch watch(given_up);
   ProgressBar bar;
-  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const Hooks hooks = bar.hooks();
   stress::Report report;
-  std::vector<std::string> messages;
-  bool complete = false;
   try {
-    report =
-        stress::run({args.families, args.threads, args.folder.empty() ? std::string() : command_line(args)}, hooks);
-    complete = report.unfinished.empty();
-    if (complete && !args.folder.empty()) messages = stress::write(report, args.folder, hooks);
+    report = stress::run({args.families, args.threads}, hooks);
   } catch (const Cancelled&) {
     bar.clear();
-    if (complete) return end_early(args, report);
     std::cerr << given_up;
     return 128 + interrupting_signal();
   }
   bar.clear();
-  if (!complete) return end_early(args, report);
-  for (const std::string& message : messages) std::cerr << "note: " << text::printable(message) << '\n';
+  if (report.unfinished == 0 && !args.file.empty()) table::write(stress::table_of(report), args.file);
   print(args, report);
-  if (!args.folder.empty()) std::cout << "Report: " << page_in(args.folder) << '\n';
+  if (report.unfinished == 0 && !args.file.empty()) std::cout << "Values: " << text::printable(args.file) << '\n';
   check_output(std::cout);
-  return report.sound() ? 0 : 1;
+  if (report.unfinished == 0) return report.sound() ? 0 : 1;
+  std::cerr << "exactff: interrupted; finished families: " << report.families.size() << " of "
+            << report.families.size() + report.unfinished << "; --family runs single ones\n";
+  return 128 + interrupting_signal();
 }
 
 }  // namespace
@@ -406,8 +338,8 @@ Command add_stress(CLI::App& app) {
   command->add_flag("--list", args->list, "List the families and what their stiffness means");
   command->add_flag("--all", args->all, "Also print the errors at each stiffness, about a thousand lines");
   flags::add_threads(*command, args->threads);
-  flags::add_value(*command, "-o,--output", args->folder, "DIR", "Folder for the report and the tables")
-      ->check(flags::is_written_folder());
+  flags::add_written(*command, "-o,--output", args->file,
+                     "File for all values: .csv, .npz or .jsonl; an existing one is replaced", flags::Format::kTable);
   command->footer(kStressFooter);
   return {command, [args] { return run(*args); }};
 }

@@ -91,13 +91,9 @@ struct TruthArguments : KeptRun {
   flags::ReceiverArguments receivers;
   flags::SourceArguments sources;
   flags::SolutionArgument solution;
-  bool unoccluded = false;
-  bool fraction = false;
-  bool gradient = false;
+  truth::Request columns;  // those that are wanted, and nothing else
   std::string measures;
   flags::ThreeNumbers up;
-  bool unit_normals = false;
-  bool uv = false;
   std::string total, ke;
   std::string shard;
   double slow_seconds = 1.0;
@@ -142,7 +138,7 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const jobs::Team* team) 
   flags::check_receiver_options(args.receivers);
   flags::check_standard_input(args.scene, args.receivers);
   flags::LitScene lit = flags::load(args.scene, args.solution);
-  auto job = std::make_unique<Job>(Job{std::move(lit.scene), {}});
+  auto job = std::make_unique<Job>(Job{std::move(lit.scene), args.columns});
   job->request.radiosities = std::move(lit.radiosities);
   print_warnings(job->scene.warnings());
   truth::Request& request = job->request;
@@ -157,12 +153,7 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const jobs::Team* team) 
   flags::SourcesUnderSky sources = flags::sources_under_sky(args.sources, job->scene);
   request.sources = std::move(sources.sources);
   request.sky = sources.sky;
-  request.unoccluded = args.unoccluded;
-  request.visible_fraction = args.fraction;
-  request.gradient = args.gradient;
   request.measures = measures_named(args);
-  request.unit_normals = args.unit_normals;
-  request.uv = args.uv;
   request.total = args.quantity();
   request.ke = args.ke == "radiance" ? KeMeans::kRadiance : KeMeans::kRadiosity;
   request.engine = args.engine.engine();
@@ -307,21 +298,14 @@ Command add_truth(CLI::App& app) {
   args->solution.add_to(*command);
   flags::add_receiver_options(*command, args->receivers);
   flags::add_source_options_under_sky(*command, args->sources);
-  command->add_flag("--unoccluded", args->unoccluded, "Add a column: the form factor without occluders");
-  command->add_flag("--fraction", args->fraction, "Add a column: the visible fraction of the source");
-  command->add_flag(
-      "--gradient", args->gradient,
-      "Add columns: the derivatives of the form factor by the receiver's point (dF_dx, dF_dy, dF_dz, per unit of "
-      "length; empty where they do not exist) and their status (certified, zero, underflow, enclosed or kink)");
+  for (const truth::OptionalColumn& column : truth::optional_columns()) {
+    command->add_flag("--" + std::string(column.name), args->columns.*column.wanted, std::string(column.help));
+  }
   flags::add_value(*command, "--measure", args->measures, "NAME[,NAME]",
                    "Add a column for each: solid-angle (in sr), overcast (the sky component of a daylight factor, of "
                    "the sky behind the source), sphere (the form factor from a small sphere at the point). All are "
                    "correctly rounded");
   flags::add_vector_option(*command, "--up", args->up, "Of --measure overcast: where the zenith is (default: 0 0 1)");
-  command->add_flag("--unit-normals", args->unit_normals,
-                    "Add columns ux,uy,uz: the normal scaled to length 1, correctly rounded; the values belong to the "
-                    "exact normals in nx,ny,nz");
-  command->add_flag("--uv", args->uv, "Add columns u,v: the place of a cell on its grid, from 0 to 1");
   command
       ->add_option("--total", args->total,
                    "Add columns total_r,total_g,total_b: this quantity from all sources together, correctly rounded, "

@@ -29,7 +29,6 @@ namespace exactff::cli {
 
 namespace {
 
-constexpr int kMostViewDigits = 10000;
 constexpr const char* kBack = "(back)";
 constexpr const char* kOpen = "(open)";
 constexpr const char* kBuried = "(buried)";
@@ -38,8 +37,7 @@ struct ViewArguments {
   flags::SceneArguments scene;
   OneReceiver receiver;
   flags::MeasureArgument measure;
-  int digits = 0;
-  int precision_cap = ViewOptions{}.precision_cap;
+  flags::PrecisionArguments precision;
   std::string engine = "edges";
   bool plain = false;
   bool json = false;
@@ -57,7 +55,8 @@ bool is_stacked(const SeenPatch& patch) {
 // --- Output ---
 
 std::string number(const ViewArguments& args, const ViewShare& share) {
-  return args.digits > 0 ? value_text(as_form_factor(share), args.digits) : plain_value(as_form_factor(share));
+  return args.precision.digits > 0 ? value_text(as_form_factor(share), args.precision.digits)
+                                   : plain_value(as_form_factor(share));
 }
 
 template <class Visit>
@@ -120,7 +119,7 @@ void print_table(const ViewArguments& args, const Scene& scene, const Receiver& 
   }
   Enclosure fronts;
   for (const SeenPatch& patch : seen.patches) fronts += patch.share.enclosure;
-  std::cout << "\nfronts  " << sum_words(fronts, args.digits) << "  (of "
+  std::cout << "\nfronts  " << sum_words(fronts, args.precision.digits) << "  (of "
             << text::counted(seen.patches.size(), "patch", "patches")
             << "; with (back), backs of faces, and (open), directions that meet nothing: "
             << words_of_whole(measure, receiver) << ")\n";
@@ -140,12 +139,14 @@ void print_csv(const ViewArguments& args, const Scene& scene, const Receiver& re
   head.set("scene_hash", scene.hash());
   head.set("receiver", receiver_text(scene, receiver));
   const auto values = [&](std::string_view name) {
-    return args.digits > 0 ? table::texts(name) : table::numbers(name, table::Strength::kCertified);
+    return args.precision.digits > 0 ? table::texts(name) : table::numbers(name, table::Strength::kCertified);
   };
   table::Rows rows("view", std::move(head),
                    {table::keys("name"), values("share"), table::numbers("lower,upper", table::Strength::kProved),
                     table::texts("status", table::Strength::kProved), values("form_factor"), table::texts("stacked")});
-  const auto put = [&](const ViewShare& share) { args.digits > 0 ? rows << number(args, share) : rows << share.value; };
+  const auto put = [&](const ViewShare& share) {
+    args.precision.digits > 0 ? rows << number(args, share) : rows << share.value;
+  };
   for_each_share(scene, seen, [&](const std::string& name, const ViewShare& share, const SeenPatch* patch) {
     rows << text::printable(name);
     put(share);
@@ -167,7 +168,7 @@ nlohmann::ordered_json share_json(const ViewArguments& args, const ViewShare& sh
                                  {"status", to_string(share.status)},
                                  {"ball", ball_json(share.enclosure)},
                                  {"bits", share.precision_bits}};
-  if (args.digits > 0) json["decimals"] = number(args, share);
+  if (args.precision.digits > 0) json["decimals"] = number(args, share);
   return json;
 }
 
@@ -278,7 +279,7 @@ int run(const ViewArguments& args) {
   print_warnings(scene.warnings());
   const Receiver receiver = args.receiver.make(scene);
   const Measure measure = args.measure.measure(args.up, args.receiver.sphere);
-  const ViewOptions options{.measure = measure, .digits = args.digits, .precision_cap = args.precision_cap};
+  const ViewOptions options{.measure = measure, .digits = args.precision.digits, .precision_cap = args.precision.cap};
   const WholeView seen = view(scene, receiver, options);
   if (args.engine == "both") whole_view::require_agreement(scene, receiver, options, seen);
   std::optional<VisibilityMesh> mesh;
@@ -308,17 +309,13 @@ int run(const ViewArguments& args) {
 }
 
 void add_output_flags(CLI::App& app, ViewArguments& args) {
-  app.add_option("--digits", args.digits, "Number of significant digits to print, each of them certified")
-      ->check(CLI::Range(1, kMostViewDigits));
+  args.precision.add_to(app);
   app.add_option("--engine", args.engine,
                  "edges: one sweep over all edges; both: also compare every patch with the per-source solver, by edges "
                  "and by Booleans; it does not affect the values")
       ->capture_default_str()
       ->check(CLI::IsMember({"edges", "both"}));
   args.measure.add_to(app);
-  app.add_option("--precision-cap", args.precision_cap, "Largest precision, in bits, of the contour integral")
-      ->check(CLI::Range(32, 1 << 24))
-      ->capture_default_str();
   auto* plain = app.add_flag(
       "--plain", args.plain,
       "Print one line per patch that is seen: name, tab, share of the view; then (back), (open) and, of a buried "

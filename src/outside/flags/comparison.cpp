@@ -162,27 +162,6 @@ std::optional<render::Camera> camera_of(const CameraArguments& args, const Scene
   return camera;
 }
 
-// The most cells along a side.
-constexpr int kAbridgedGrid = 12;
-
-std::string abridged_grid(const std::string& grid) {
-  const auto cells = numbers_across(grid);
-  if (!cells) return grid;  // refused later
-  return fmt::format("{}x{}", std::min(cells->first, kAbridgedGrid), std::min(cells->second, kAbridgedGrid));
-}
-
-// Reduces settings that the user did not give.
-void abridge(study::Request& request) {
-  if (request.sweeps.rays.empty()) request.sweeps.rays = {1, 16, 64};
-  if (request.sweeps.seeds.empty()) request.sweeps.seeds = {1, 2, 3};
-  if (request.sweeps.patterns.empty()) request.sweeps.patterns = {SamplePattern::kJittered};
-  if (request.sweeps.variants.empty()) request.sweeps.variants = {Variant::kMended};
-  request.methods.receivers = std::min<std::size_t>(request.methods.receivers, 12);
-  request.methods.budget = std::min(request.methods.budget, 0.2);
-  request.sweep_budget = std::min(request.sweep_budget, 1.5);
-  request.seconds_for_a_time = 0.02;
-}
-
 }  // namespace
 
 std::string short_name(const std::string& path) {
@@ -190,8 +169,7 @@ std::string short_name(const std::string& path) {
   return path.starts_with('@') ? path.substr(1) : std::filesystem::path(path).filename().string();
 }
 
-Comparison comparison_of(ComparisonArguments args, bool abridged, int threads) {
-  if (abridged && !args.receivers.grid.empty()) args.receivers.grid = abridged_grid(args.receivers.grid);
+Comparison comparison_of(const ComparisonArguments& args, int threads) {
   check_receiver_options(args.receivers);
   check_effects(args);
   check_standard_input(args.scene, args.receivers);
@@ -200,6 +178,7 @@ Comparison comparison_of(ComparisonArguments args, bool abridged, int threads) {
   request.sweeps = sweeps_of(args);
   request.methods = methods_of(args);
   request.sweep_budget = args.sweep_budget.value_or(request.sweep_budget);
+  request.seconds_for_a_time = std::min(request.seconds_for_a_time, request.methods.budget / 10.0);
   comparison.scene = std::make_shared<const Scene>(args.scene.load());
   request.scene = comparison.scene.get();
   request.scene_name = short_name(args.scene.path);
@@ -212,7 +191,6 @@ Comparison comparison_of(ComparisonArguments args, bool abridged, int threads) {
   comparison.warnings = warnings_of_receivers(chosen);
   request.receivers = std::move(chosen.receivers);
   request.receivers_name = std::move(chosen.description);
-  if (abridged) abridge(request);
   comparison.title = args.title.empty() ? request.scene_name : args.title;
   return comparison;
 }
@@ -250,7 +228,6 @@ void ComparisonArguments::add_to(CLI::App& app) {
                 "The point that it looks at");
   app.get_option("--fov")->needs(app.get_option("--eye"));
   add_value(app, "--title", title, "TEXT", "Name of the scene in the report");
-  app.add_flag("--unless-abridged", unless_abridged, "Leave this scene out of abridged reports");
 }
 
 // --- the study file ---
@@ -289,18 +266,17 @@ void add_line(const text::TextLine& line, const std::string& file, StudyFile& st
   std::vector<std::string> words = split_words(line.text, file, line.number);
   const std::string kind = words.front();
   words.erase(words.begin());
-  std::vector<StudyLine>* list = kind == "scene" ? &study.scenes : kind == "experiment" ? &study.experiments : nullptr;
-  if (list == nullptr && kind != "title") {
+  if (kind != "scene" && kind != "title") {
     throw InputError(Problem{file, line.number, "a line begins with " + text::in_quotes(kind),
                              "the first word says what the line is",
-                             "begin it with title, scene or experiment, or with # for a comment"});
+                             "begin it with title or scene, or with # for a comment"});
   }
   if (words.empty()) {
     throw InputError(Problem{file, line.number, "nothing follows " + text::in_quotes(kind), "the line is incomplete",
                              "complete the line or remove it"});
   }
-  if (list != nullptr) {
-    list->push_back({line.number, std::move(words)});
+  if (kind == "scene") {
+    study.scenes.push_back({line.number, std::move(words)});
   } else {
     study.title = std::string(text::trimmed(line.text.substr(kind.size())));
   }
@@ -322,8 +298,8 @@ StudyFile parse_study_file(const std::filesystem::path& path) {
       for (const Problem& problem : error.problems()) problems.add(problem);
     }
   }
-  if (problems.empty() && study.scenes.empty() && study.experiments.empty()) {
-    problems.add({file, 0, "the study has no scene and no experiment", "there is nothing to do",
+  if (problems.empty() && study.scenes.empty()) {
+    problems.add({file, 0, "the study has no scene", "there is nothing to do",
                   "add a line, for example: scene room.obj --on floor --grid 16x16"});
   }
   problems.throw_if_any();
@@ -381,49 +357,24 @@ void at_line(const std::string& file, std::size_t number, const Do& act) {
   }
 }
 
-void add_scene(const StudyLine& line, const std::string& file, report::Plan& plan) {
-  ComparisonArguments args = arguments_of(line, file);
-  if (plan.effort.abridged && args.unless_abridged) {
-    const std::string name = args.title.empty() ? short_name(args.scene.path) : args.title;
-    plan.left_out.push_back({name, "this report is abridged"});
-    return;
-  }
+void add_scene(const StudyLine& line, const std::string& file, int threads, report::Plan& plan) {
+  const ComparisonArguments args = arguments_of(line, file);
   if (!args.receivers.file.empty()) plan.files_read.emplace_back(args.receivers.file);
-  Comparison comparison = comparison_of(std::move(args), plan.effort.abridged, plan.effort.threads);
+  Comparison comparison = comparison_of(args, threads);
   std::ranges::copy(comparison.scene->files(), std::back_inserter(plan.files_read));
   plan.add_scene(std::move(comparison.title), std::move(comparison.scene), std::move(comparison.request),
                  std::move(comparison.warnings));
 }
 
-void add_experiments(const StudyLine& line, report::Plan& plan) {
-  constexpr std::string_view kUnlessAbridged = "--unless-abridged";
-  std::vector<std::string> names = line.words;
-  const bool marked = std::erase(names, kUnlessAbridged) > 0;
-  if (marked && names.empty()) {
-    text::refuse("nothing but --unless-abridged follows 'experiment'", "it marks the experiments of its line",
-                 "name them, or remove the line");
-  }
-  if (!marked || !plan.effort.abridged) return plan.add_experiments(names);
-  report::Plan named;
-  named.add_experiments(names);
-  for (const std::string& name : named.experiments) {
-    plan.left_out.push_back({"the experiment " + name, "this report is abridged"});
-  }
-}
-
 }  // namespace
 
-report::Plan read_study_file(const std::filesystem::path& file, const report::Effort& effort) {
+report::Plan read_study_file(const std::filesystem::path& file, int threads) {
   const kernel::StandardArithmetic arithmetic;
   const StudyFile study = parse_study_file(file);
   report::Plan plan;
   plan.title = study.title.empty() ? short_name(file.string()) : study.title;
-  plan.effort = effort;
   for (const StudyLine& line : study.scenes) {
-    at_line(file.string(), line.number, [&] { add_scene(line, file.string(), plan); });
-  }
-  for (const StudyLine& line : study.experiments) {
-    at_line(file.string(), line.number, [&] { add_experiments(line, plan); });
+    at_line(file.string(), line.number, [&] { add_scene(line, file.string(), threads, plan); });
   }
   return plan;
 }

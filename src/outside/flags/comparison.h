@@ -30,7 +30,6 @@ struct ComparisonArguments {
   flags::EngineArgument engine;
   flags::CameraArguments camera;  // of the report's pictures
   std::string title;
-  bool unless_abridged = false;
 
   void add_to(CLI::App& app);
 };
@@ -42,9 +41,8 @@ struct Comparison {
   std::vector<Problem> warnings;  // of its receivers
 };
 
-// Loads the scene and completes the request. `abridged` makes grids coarser, and reduces the settings that are not
-// given. Throws InputError.
-[[nodiscard]] Comparison comparison_of(ComparisonArguments args, bool abridged, int threads);
+// Loads the scene and completes the request. Throws InputError.
+[[nodiscard]] Comparison comparison_of(const ComparisonArguments& args, int threads);
 
 // "cornell_box.obj" for a path, "teapot:segments=8" for a model.
 [[nodiscard]] std::string short_name(const std::string& scene);
@@ -54,18 +52,16 @@ struct Comparison {
 //   # a comment
 //   title Form factors of rooms
 //   scene cornell_box.obj --on floor --grid 32x32 --title "Cornell box"
-//   scene @karkanis:n=200 --on ... --unless-abridged
-//   experiment karkanis-times
-//   experiment meshing --unless-abridged
+//   scene @karkanis:n=200 --on floor --grid 16x16
 //
-// A scene line has the words and flags that `exactff compare` takes for one scene. Files are
-// looked up in the folder of the study.
+// A scene line has the words and flags that `exactff compare` takes for one scene. Files are looked up in the folder
+// of the study.
 
 [[nodiscard]] bool is_study_file(const std::string& path);  // by its extension, .study
 
 // Reads a .study file (data/guide/methods.md) and loads its scenes. Throws one InputError with the line of every
 // problem.
-[[nodiscard]] report::Plan read_study_file(const std::filesystem::path& file, const report::Effort& effort = {});
+[[nodiscard]] report::Plan read_study_file(const std::filesystem::path& file, int threads = 0);
 
 // --- its syntax ---
 
@@ -77,7 +73,6 @@ struct StudyLine {
 struct StudyFile {
   std::string title;
   std::vector<StudyLine> scenes;
-  std::vector<StudyLine> experiments;
 };
 
 // Throws InputError with everything that is wrong in the syntax of the file. Flags are checked later, by the code that

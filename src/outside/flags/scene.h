@@ -91,6 +91,14 @@ struct MeasureArgument {
 // "form factor", "solid angle in sr", ...
 [[nodiscard]] std::string words_of(const Measure& measure);
 
+// How precise values of one receiver are.
+struct PrecisionArguments {
+  int digits = 0;  // 0: the nearest double
+  int cap = ExactOptions{}.precision_cap;
+
+  void add_to(CLI::App& app);  // --digits, --precision-cap
+};
+
 struct EngineArgument {
   std::string name = "edges";
 

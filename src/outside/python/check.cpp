@@ -9,6 +9,7 @@
 #include "flags/values.h"
 #include "python/bindings.h"
 #include "text/refuse.h"
+#include "text/settings.h"
 
 namespace exactff::python {
 namespace {
@@ -20,7 +21,7 @@ py::tuple distribution(const check::Distribution& d) {
 // Files that a check reads and writes besides.
 struct CheckFiles {
   std::optional<std::filesystem::path> baseline, write_baseline, junit;
-  double slack = check::kDefaultSlack;
+  double slack;
 };
 
 void write_file(const std::filesystem::path& path, const std::string& text) {
@@ -74,8 +75,8 @@ py::tuple result_of(check::Report report, const CheckFiles& files) {
 // How rows of two files are matched.
 struct Matching {
   std::string truth_column, value_column;
-  bool by_position = false, partial = false;
-  double tolerance = 0.0;
+  bool by_position, partial;
+  double tolerance;
 };
 
 check::Options options_of(const Matching& matching, const check::Criteria& limits) {
@@ -174,31 +175,26 @@ py::tuple check_arrays(const Numbers& exact, const Numbers& lower, const Numbers
 void bind_check(py::module_& module) {
   using check::Criteria;
   py::class_<Criteria>(module, "Limits")
-      .def(py::init<>())
-      .def_readwrite("max_abs", &Criteria::max_abs)
-      .def_readwrite("max_rel", &Criteria::max_rel)
-      .def_readwrite("rms", &Criteria::rms)
-      .def_readwrite("eps_b", &Criteria::eps_b)
-      .def_property("quantiles", nullptr,
-                    [](Criteria& limits, const std::vector<std::pair<double, double>>& all) {
-                      for (const auto& [share, limit] : all) limits.quantiles.push_back({share, limit});
-                    })
-      .def_readwrite("per_source", &Criteria::per_source)
-      .def_readwrite("relative_floor", &Criteria::relative_floor)
-      .def_readwrite("worst", &Criteria::worst);
+      .def(py::init([](std::optional<double> max_abs, std::optional<double> max_rel, std::optional<double> rms,
+                       std::optional<double> eps_b, const std::vector<std::pair<double, double>>& quantiles,
+                       bool per_source, double relative_floor, std::size_t worst) {
+        Criteria limits{.max_abs = max_abs, .max_rel = max_rel, .rms = rms, .eps_b = eps_b};
+        for (const auto& [share, limit] : quantiles) limits.quantiles.push_back({share, limit});
+        limits.per_source = per_source;
+        limits.relative_floor = relative_floor;
+        limits.worst = worst;
+        return limits;
+      }));
+  using File = std::optional<std::filesystem::path>;
   py::class_<CheckFiles>(module, "CheckFiles")
-      .def(py::init<>())
-      .def_readwrite("baseline", &CheckFiles::baseline)
-      .def_readwrite("write_baseline", &CheckFiles::write_baseline)
-      .def_readwrite("junit", &CheckFiles::junit)
-      .def_readwrite("slack", &CheckFiles::slack);
+      .def(py::init([](File baseline, File write_baseline, File junit, double slack) {
+        return CheckFiles{std::move(baseline), std::move(write_baseline), std::move(junit), slack};
+      }));
   py::class_<Matching>(module, "Matching")
-      .def(py::init<>())
-      .def_readwrite("truth_column", &Matching::truth_column)
-      .def_readwrite("value_column", &Matching::value_column)
-      .def_readwrite("by_position", &Matching::by_position)
-      .def_readwrite("partial", &Matching::partial)
-      .def_readwrite("tolerance", &Matching::tolerance);
+      .def(py::init(
+          [](std::string truth_column, std::string value_column, bool by_position, bool partial, double tolerance) {
+            return Matching{std::move(truth_column), std::move(value_column), by_position, partial, tolerance};
+          }));
   module.def("check_files", &check_files, "truth"_a, "candidate"_a, "matching"_a, "limits"_a, "files"_a);
   module.def("scoreboard", &scoreboard, "truth"_a, "candidates"_a, "matching"_a, "limits"_a, "seconds"_a, "folder"_a);
   module.def(
@@ -223,8 +219,17 @@ py::tuple write_rows(const SharedScene& scene, const std::string& scene_name, co
                      const std::filesystem::path& file, const std::string& existing,
                      const std::vector<std::string>& columns, const std::vector<MeasureTuple>& measures, int threads,
                      const py::object& progress) {
-  const auto wanted = [&](const char* column) { return std::ranges::find(columns, column) != columns.end(); };
   truth::Request request;
+  const auto known = truth::optional_columns();
+  for (const std::string& name : columns) {
+    const auto found = std::ranges::find(known, name, &truth::OptionalColumn::name);
+    if (found == known.end()) {
+      std::vector<std::string_view> names;
+      for (const truth::OptionalColumn& column : known) names.push_back(column.name);
+      throw text::unknown_name("column", name, names);
+    }
+    request.*found->wanted = true;
+  }
   request.scene = &scene.scene();
   request.scene_name = scene_name;
   request.receivers = receivers;
@@ -232,11 +237,6 @@ py::tuple write_rows(const SharedScene& scene, const std::string& scene_name, co
   std::vector<std::string> patches = sources;
   request.sky = flags::take_sky(scene.scene(), patches);
   if (!request.sky || !patches.empty()) request.sources = scene.selections(patches);
-  request.unoccluded = wanted("unoccluded");
-  request.visible_fraction = wanted("visible_fraction");
-  request.unit_normals = wanted("unit_normals");
-  request.uv = wanted("uv");
-  request.gradient = wanted("gradient");
   for (const MeasureTuple& measure : measures) request.measures.push_back(measure_of(measure));
   request.threads = threads;
   Interrupt interrupt(progress);

@@ -10,8 +10,9 @@
 #include "flags/scene.h"
 #include "kernel/poll.h"
 #include "python/bindings.h"
-#include "report/pictures.h"
+#include "report/report.h"
 #include "scene/selections.h"
+#include "text/refuse.h"
 #include "truth/unit_normal.h"
 
 namespace exactff::python {
@@ -24,19 +25,35 @@ Measure measure_of(const MeasureTuple& measure) {
 namespace {
 
 void bind_enclosure(py::module_& module) {
-  py::class_<Enclosure>(module, "Enclosure")
-      .def_static("of", &Enclosure::of, "value"_a)
-      .def_property_readonly("midpoint", &Enclosure::midpoint)
-      .def_property_readonly("radius", &Enclosure::radius)
-      .def_property_readonly("lower", &Enclosure::lower)
-      .def_property_readonly("upper", &Enclosure::upper)
-      .def_property_readonly("nearest", &Enclosure::nearest)
-      .def("decimals", &Enclosure::decimals, "digits"_a)
-      .def("contains", py::overload_cast<double>(&Enclosure::contains, py::const_), "value"_a)
+  const auto decimals = [](const Enclosure& ball, int digits) {
+    constexpr int kMostDigits = 10000;
+    if (digits >= 1 && digits <= kMostDigits) return ball.decimals(digits);
+    text::refuse("digits is " + std::to_string(digits), "it is a whole number from 1 to 10000", "ask for fewer digits");
+  };
+  py::class_<Enclosure>(
+      module, "Enclosure",
+      "A ball that is proved to contain a real number: every number within ``radius`` of ``midpoint`` may be it.\n\n"
+      "``midpoint`` and ``radius`` are decimal strings that mean exactly what they say:\n"
+      "``fractions.Fraction(e.midpoint)`` and ``mpmath.mpf(e.midpoint)`` take them. Balls can be added and "
+      "subtracted;\n"
+      "rounded values cannot.")
+      .def_property_readonly("midpoint", &Enclosure::midpoint, "The midpoint, as a decimal string.")
+      .def_property_readonly("radius", &Enclosure::radius, "The radius, as a decimal string.")
+      .def_property_readonly("lower", &Enclosure::lower, "The largest double that is not above the ball's lower end.")
+      .def_property_readonly("upper", &Enclosure::upper, "The smallest double that is not below the ball's upper end.")
+      .def_property_readonly(
+          "nearest", &Enclosure::nearest,
+          "The double to which every number in the ball rounds; None if they do not all round to the same one.")
+      .def("decimals", decimals, "digits"_a,
+           "The number to so many significant digits, correctly rounded; None if the ball does not determine them.")
+      .def("__contains__", py::overload_cast<double>(&Enclosure::contains, py::const_))
       .def(
-          "plus", [](Enclosure a, const Enclosure& b) { return a += b; }, "other"_a)
+          "__add__", [](Enclosure a, const Enclosure& b) { return a += b; }, py::is_operator())
       .def(
-          "minus", [](Enclosure a, const Enclosure& b) { return a -= b; }, "other"_a);
+          "__sub__", [](Enclosure a, const Enclosure& b) { return a -= b; }, py::is_operator())
+      .def("__repr__", [](const Enclosure& ball) {
+        return "<exactff.Enclosure " + ball.midpoint() + " +/- " + ball.radius() + ">";
+      });
 }
 
 // --- arrays ---
@@ -236,23 +253,18 @@ std::vector<std::size_t> cutters_of(const Pair& pair) {
   return indices;
 }
 
-std::optional<std::string> visible_part_of(const Pair& pair) {
-  if (!pair.result().visible_part) return std::nullopt;
-  return std::string(to_string(*pair.result().visible_part));
+// Value, lower, upper, status, enclosure, source, bits, visible fraction and part.
+py::tuple facts_of(const Pair& pair) {
+  const FormFactor& f = pair.result();
+  const auto part = f.visible_part ? std::optional(std::string(to_string(*f.visible_part))) : std::nullopt;
+  return py::make_tuple(f.value, f.lower, f.upper, static_cast<int>(f.status), f.enclosure, pair.source_name(),
+                        f.precision_bits, f.visible_fraction, part);
 }
 
 void bind_pair(py::module_& module) {
   py::class_<Pair, std::shared_ptr<Pair>>(module, "Pair")
-      .def_property_readonly("value", [](const Pair& p) { return p.result().value; })
-      .def_property_readonly("lower", [](const Pair& p) { return p.result().lower; })
-      .def_property_readonly("upper", [](const Pair& p) { return p.result().upper; })
-      .def_property_readonly("status", [](const Pair& p) { return static_cast<int>(p.result().status); })
-      .def_property_readonly("enclosure", [](const Pair& p) { return p.result().enclosure; })
-      .def_property_readonly("visible_fraction", [](const Pair& p) { return p.result().visible_fraction; })
-      .def_property_readonly("visible_part", &visible_part_of)
-      .def_property_readonly("precision_bits", [](const Pair& p) { return p.result().precision_bits; })
-      .def_property_readonly("behind", [](const Pair& p) { return behind_every_face(p.result()); })
-      .def_property_readonly("source", &Pair::source_name)
+      .def_property_readonly("value", [](const Pair& pair) { return pair.result().value; })
+      .def("facts", &facts_of)
       .def("planes", &planes_of)
       .def("cutters", &cutters_of)
       .def("gradient", &gradient_of)
@@ -314,8 +326,6 @@ void bind_methods(py::module_& module) {
   module.def("method_names", &method_names);
   module.def(
       "method_description", [](const std::string& name) { return description(methods::method_named(name)); }, "name"_a);
-  module.def(
-      "method_text", [](const std::string& text) { return methods::parse(text).text(); }, "text"_a);
   module.def("estimates", &estimates, "method"_a, "scene"_a, "points"_a, "normals"_a, "on"_a, "sources"_a, "threads"_a,
              "progress"_a);
 }

@@ -262,7 +262,6 @@ void bind_scene(py::module_& module) {
           },
           "face"_a, "set"_a)
       .def("face_count", [](const SharedScene& s) { return s.scene().faces().size(); })
-      .def("piece_count", [](const SharedScene& s) { return s.scene().pieces().size(); })
       .def(
           "face_name",
           [](const SharedScene& s, std::int64_t face) { return s.scene().name_of(face_at(s.scene(), face)); }, "face"_a)

@@ -90,27 +90,27 @@ Field derivative_status(std::string name) {
           }};
 }
 
-// Which of the optional columns there are.
-struct Wanted {
-  bool unit_normals = true, uv = true, unoccluded = true, visible_fraction = true, gradient = true, total = true,
-       total_bounds = true;
-  std::array<bool, 3> measures{true, true, true};
-  std::string unit_of_total = "Ke";
-};
-
 template <std::size_t Index>
 Field measure(std::string name, std::string unit) {
   return number < [](auto& row) -> auto& { return row.measures[Index]; }
   > (std::move(name), std::move(unit), Strength::kCertified);
 }
 
-void add_measures(std::vector<Field>& list, const std::array<bool, 3>& wanted) {
-  if (wanted[0]) list.push_back(measure<0>("solid_angle", "sr"));
-  if (wanted[1]) list.push_back(measure<1>("overcast", ""));
-  if (wanted[2]) list.push_back(measure<2>("sphere", ""));
-}
+constexpr std::array kOptionalColumns = {
+    OptionalColumn{"unoccluded", "Add a column: the form factor without occluders", &Request::unoccluded},
+    OptionalColumn{"fraction", "Add a column: the visible fraction of the source", &Request::visible_fraction},
+    OptionalColumn{"gradient",
+                   "Add columns: the derivatives of the form factor by the receiver's point (dF_dx, dF_dy, dF_dz, per "
+                   "unit of length; empty where they do not exist) and their status (certified, zero, underflow, "
+                   "enclosed or kink)",
+                   &Request::gradient},
+    OptionalColumn{"unit-normals",
+                   "Add columns ux,uy,uz: the normal scaled to length 1, correctly rounded; the values belong to the "
+                   "exact normals in nx,ny,nz",
+                   &Request::unit_normals},
+    OptionalColumn{"uv", "Add columns u,v: the place of a cell on its grid, from 0 to 1", &Request::uv}};
 
-std::vector<Field> fields(const Wanted& wanted) {
+std::vector<Field> fields(const Request& wanted) {
   std::vector<Field> list = {text<&Row::receiver>("receiver", true), text<&Row::on>("on")};
   add_vector<&Row::point>(list, {"x", "y", "z"}, "length", Strength::kGiven);
   add_vector<&Row::normal>(list, {"nx", "ny", "nz"}, "of any length", Strength::kGiven);
@@ -130,7 +130,11 @@ std::vector<Field> fields(const Wanted& wanted) {
   if (wanted.visible_fraction) {
     list.push_back(one<&Row::visible_fraction>("visible_fraction", "", Strength::kCertified));
   }
-  add_measures(list, wanted.measures);
+  std::array<bool, 3> measures{};
+  for (const Measure& one : wanted.measures) measures[measure_column(one)] = true;
+  if (measures[0]) list.push_back(measure<0>("solid_angle", "sr"));
+  if (measures[1]) list.push_back(measure<1>("overcast", ""));
+  if (measures[2]) list.push_back(measure<2>("sphere", ""));
   if (wanted.gradient) {
     add_vector<&Row::gradient>(list, {"dF_dx", "dF_dy", "dF_dz"}, "1/length", Strength::kCertified);
     list.push_back(derivative_status<0>("dF_dx_status"));
@@ -139,10 +143,11 @@ std::vector<Field> fields(const Wanted& wanted) {
   }
   add_channels<&Row::radiosity>(list, "radiosity", "Ke", Strength::kEstimated);
   list.push_back(one<&Row::largest_rho_b>("largest_rho_b", "Ke", Strength::kEstimated));
-  if (wanted.total) add_channels<&Row::total>(list, "total", wanted.unit_of_total, Strength::kCertified);
-  if (wanted.total_bounds) {
-    add_channels<&Row::total_lower>(list, "total_lower", wanted.unit_of_total, Strength::kProved);
-    add_channels<&Row::total_upper>(list, "total_upper", wanted.unit_of_total, Strength::kProved);
+  const std::string unit = wanted.total ? unit_of(*wanted.total, wanted.ke) : "";
+  if (wanted.total) add_channels<&Row::total>(list, "total", unit, Strength::kCertified);
+  if (wanted.radiosities) {
+    add_channels<&Row::total_lower>(list, "total_lower", unit, Strength::kProved);
+    add_channels<&Row::total_upper>(list, "total_upper", unit, Strength::kProved);
   }
   list.push_back(status<&Row::status>("status"));
   return list;
@@ -158,23 +163,20 @@ std::size_t measure_column(const Measure& measure) {
   return measure.sphere ? 2 : measure.kind == MeasureKind::kOvercast ? 1 : 0;
 }
 
-Columns columns_of(const Request& request) {
-  std::array<bool, 3> measures{};
-  for (const Measure& measure : request.measures) measures[measure_column(measure)] = true;
-  return {"truth", fields({.unit_normals = request.unit_normals,
-                           .uv = request.uv,
-                           .unoccluded = request.unoccluded,
-                           .visible_fraction = request.visible_fraction,
-                           .gradient = request.gradient,
-                           .total = request.total.has_value(),
-                           .total_bounds = request.radiosities.has_value(),
-                           .measures = measures,
-                           .unit_of_total = request.total ? unit_of(*request.total, request.ke) : ""})};
-}
+std::span<const OptionalColumn> optional_columns() { return kOptionalColumns; }
+
+Columns columns_of(const Request& request) { return {"truth", fields(request)}; }
 
 const Columns& all_columns() {
-  static const Columns all("truth", fields({}));
-  return all;
+  static const Columns kAll = [] {
+    Request all;
+    for (const OptionalColumn& one : kOptionalColumns) all.*one.wanted = true;
+    all.measures = {{.kind = MeasureKind::kSolidAngle}, {.kind = MeasureKind::kOvercast}, {.sphere = true}};
+    all.total = Quantity::kRadiosity;
+    all.radiosities.emplace();
+    return columns_of(all);
+  }();
+  return kAll;
 }
 
 }  // namespace exactff::truth

@@ -230,7 +230,6 @@ class FigureMaker {
     add_convergence(Sight::kPartly, "convergence-partly", "Convergence where the source is partly hidden");
     add_convergence(Sight::kVisible, "convergence-visible", "Convergence where the whole source is visible");
     if (!methods().fields.empty()) add_by_fraction();
-    if (!methods().fields.empty()) add_by_distance();
     add_profile();
   }
 
@@ -313,44 +312,7 @@ class FigureMaker {
                                 : "no receiver sees the whole source, or fewer than three settings were run");
   }
 
-  // Every method's errors at all receivers: the fields, and the adaptive algorithm's base setting.
-  struct Field {
-    std::string name;
-    std::vector<double> errors;
-    int style = 1;
-  };
-
-  [[nodiscard]] std::vector<Field> fields() const {
-    std::vector<Field> list;
-    for (const MethodField& field : methods().fields) {
-      const auto place = std::find(drawn_ladders_.begin(), drawn_ladders_.end(), field.ladder);
-      if (place == drawn_ladders_.end()) continue;
-      list.push_back({methods().ladders[field.ladder].name, field.radiosity_errors,
-                      static_cast<int>(place - drawn_ladders_.begin()) + 1});
-    }
-    return list;
-  }
-
-  // RMS over the receivers of each bin, against the position of the bin on the axis. Bins with fewer than three
-  // receivers are left out.
-  template <class BinOf>
-  [[nodiscard]] std::vector<page::Series> series_by_bin(const BinOf& bin_of) const {
-    constexpr std::size_t kFewest = 3;
-    std::vector<page::Series> series;
-    for (const Field& field : fields()) {
-      std::map<double, std::vector<double>> bins;
-      for (std::size_t i = 0; i < field.errors.size(); ++i) {
-        if (const std::optional<double> bin = bin_of(i)) bins[*bin].push_back(field.errors[i]);
-      }
-      page::Series one{field.name, {}, field.style};
-      for (const auto& [bin, errors] : bins) {
-        if (errors.size() >= kFewest) one.points.emplace_back(bin, study::error_statistics(errors).rms / brightest_);
-      }
-      series.push_back(std::move(one));
-    }
-    return series;
-  }
-
+  // RMS over the receivers of each bin. Bins with fewer than three receivers are left out.
   void add_by_fraction() {
     if (study_.request.scene->faces().size() > study::kMostFacesForFractions) {
       leave_figure_out("Error by how much of the source is visible",
@@ -364,32 +326,27 @@ class FigureMaker {
       if (study_.exact[i].sight == Sight::kVisible) return 100.0;
       return std::clamp(10.0 * std::floor(10.0 * v) + 5.0, 5.0, 95.0);
     };
+    constexpr std::size_t kFewest = 3;
+    std::vector<page::Series> series;
+    for (const MethodField& field : methods().fields) {
+      const auto place = std::ranges::find(drawn_ladders_, field.ladder);
+      if (place == drawn_ladders_.end()) continue;
+      std::map<double, std::vector<double>> bins;
+      for (std::size_t i = 0; i < field.radiosity_errors.size(); ++i) {
+        if (const std::optional<double> bin = bin_of(i)) bins[*bin].push_back(field.radiosity_errors[i]);
+      }
+      page::Series one{methods().ladders[field.ladder].name, {}, static_cast<int>(place - drawn_ladders_.begin()) + 1};
+      for (const auto& [bin, errors] : bins) {
+        if (errors.size() >= kFewest) one.points.emplace_back(bin, study::error_statistics(errors).rms / brightest_);
+      }
+      series.push_back(std::move(one));
+    }
     add({"by-fraction", "Error by how much of the source is visible",
          "Receivers are grouped into bins by the exact visible share of the source’s area: nothing, tenths, all. Bins "
          "with fewer than three receivers are left out. Each method at its middle setting (see the table), with one "
          "seed.",
          page::line_plot(
-             {"visible share of the source, %", kRelative, false, true, {"set xrange [-3:103]", kFloor}, {}},
-             series_by_bin(bin_of))},
-        "every error is 0, or no bin has three receivers");
-  }
-
-  void add_by_distance() {
-    const std::string title = "Error by distance to the nearest shadow edge";
-    if (study_.edge_distance.empty()) return;  // already in the list of what is left out
-    const double unit = 0.5 * study_.edge_resolution;
-    const auto bin_of = [&](std::size_t i) -> std::optional<double> {
-      if (study_.exact[i].sight == Sight::kNothing) return std::nullopt;
-      const double d = std::max(study_.edge_distance[i], unit);
-      return unit * std::exp2(std::floor(std::log2(d / unit)) + 0.5);
-    };
-    add({"by-distance", title,
-         "A shadow edge is where the source begins to be hidden or begins to be visible. The edges are found by exact "
-         "classification of a finer grid, so distances below " +
-             text::rounded(unit, 2) +
-             " cannot be distinguished. Bins are powers of two. The settings are those of the previous figure.",
-         page::line_plot({"distance to the nearest shadow edge (scene’s unit)", kRelative, true, true, {kFloor}, {}},
-                         series_by_bin(bin_of))},
+             {"visible share of the source, %", kRelative, false, true, {"set xrange [-3:103]", kFloor}, {}}, series)},
         "every error is 0, or no bin has three receivers");
   }
 

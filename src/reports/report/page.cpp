@@ -1,9 +1,7 @@
 // The report as one HTML page.
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
-#include <set>
 
 #include "page/page_text.h"
 #include "report/report.h"
@@ -22,6 +20,24 @@ std::string anchor_of(const SceneChapter& scene) { return scene.name.empty() ? "
 std::string figure_text(const page::DrawnFigure& drawn) {
   return "<figure id=\"" + drawn.figure.id + "\">\n<h3>" + page::prose(text::html(drawn.figure.title)) + "</h3>\n" +
          drawn.svg + "\n<figcaption>" + page::prose(drawn.figure.caption) + "</figcaption>\n</figure>\n";
+}
+
+// All figures that are wanted; empty if there are none.
+template <class Wants>
+std::string figure_group(const page::DrawnFigures& drawn, const Wants& wants, bool maps = false) {
+  std::string group;
+  for (const page::DrawnFigure& one : drawn.figures) {
+    if (!one.svg.empty() && wants(one.figure)) group += figure_text(one);
+  }
+  if (group.empty()) return {};
+  return std::string("<div class=\"figures") + (maps ? " maps" : "") + "\">\n" + group + "</div>\n";
+}
+
+std::string left_out_list(const std::vector<LeftOut>& items) {
+  std::string text = "<ul>\n";
+  for (const LeftOut& item : items)
+    text += "<li>" + page::prose(text::html(item.what) + ": " + text::html(item.why)) + ".</li>\n";
+  return text + "</ul>\n";
 }
 
 // Figures of the adaptive algorithm's sweeps.
@@ -279,7 +295,7 @@ class ScenePart {
 
 class PageWriter {
  public:
-  PageWriter(const StudyReport& report, const Pages& pages) : report_(report), pages_(pages) {}
+  PageWriter(const StudyReport& report, const std::vector<Page>& pages) : report_(report), pages_(pages) {}
 
   std::string write() {
     head();
@@ -287,10 +303,8 @@ class PageWriter {
     contents();
     if (has_overview()) overview();
     for (std::size_t i = 0; i < report_.scenes.size(); ++i) {
-      text_ += ScenePart(report_.scenes[i], pages_.scenes[i]).write();
+      text_ += ScenePart(report_.scenes[i], pages_[i]).write();
     }
-    for (std::size_t i = 0; i < report_.chapters.size(); ++i) chapter(report_.chapters[i], pages_.chapters[i]);
-    left_out();
     definitions();
     reproduction();
     if (!report_.identity.empty()) text_ += report_.identity + '\n';
@@ -299,7 +313,7 @@ class PageWriter {
   }
 
  private:
-  [[nodiscard]] bool alone() const { return report_.scenes.size() == 1 && report_.chapters.empty(); }
+  [[nodiscard]] bool alone() const { return report_.scenes.size() == 1; }
 
   [[nodiscard]] std::string title() const {
     if (!report_.title.empty()) return text::html(report_.title);
@@ -310,9 +324,7 @@ class PageWriter {
     text_ = page::page_head(title());
     text_ += "<h1>" + title() + "</h1>\n";
     if (alone()) return;
-    text_ += "<p class=\"subtitle\">" + text::counted(report_.scenes.size(), "scene");
-    if (!report_.chapters.empty()) text_ += " and " + text::counted(report_.chapters.size(), "experiment");
-    text_ += ".</p>\n";
+    text_ += "<p class=\"subtitle\">" + text::counted(report_.scenes.size(), "scene") + ".</p>\n";
   }
 
   void question() {
@@ -330,8 +342,6 @@ class PageWriter {
     };
     if (has_overview()) link("overview", "Which method for which error");
     for (const SceneChapter& scene : report_.scenes) link(anchor_of(scene), text::html(scene.title));
-    for (const page::Chapter& chapter : report_.chapters) link("chapter-" + chapter.name, text::html(chapter.title));
-    if (!report_.left_out.empty()) link("left-out", "What this report leaves out, and why");
     link("words", "Terms and sources");
     link("reproduction", "How to reproduce this page");
     text_ += "</ul></nav>\n";
@@ -341,12 +351,6 @@ class PageWriter {
     return !alone() && std::ranges::any_of(report_.scenes, [](const SceneChapter& scene) {
       return exact_cell(scene.study) != nullptr;
     });
-  }
-
-  void left_out() {
-    if (report_.left_out.empty()) return;
-    text_ += "<section id=\"left-out\">\n" + page::heading("What this report leaves out, and why") +
-             left_out_list(report_.left_out) + "</section>\n";
   }
 
   // One row per scene: the cheapest method for every wanted error, the exact method included.
@@ -374,54 +378,6 @@ class PageWriter {
       }
     }
     text_ += table.text() + "\n</section>\n";
-  }
-
-  // Of an experiment: a sentence, a figure or two, then the findings and further figures, folded.
-  void chapter(const page::Chapter& chapter, const Page& page) {
-    text_ +=
-        "<section class=\"scene\" id=\"chapter-" + chapter.name + "\">\n<h2>" + text::html(chapter.title) + "</h2>\n";
-    if (!chapter.paragraphs.empty()) {
-      const std::string opening = opening_sentence(chapter.paragraphs.front());
-      text_ += "<p class=\"verdict\">" + page::prose(text::html(opening)) + "</p>\n";
-    }
-    if (!page.drawn.none.empty()) text_ += page::paragraph(text::html(page.drawn.none));
-    constexpr std::size_t kShown = 2;
-    std::set<std::string> shown;
-    for (const page::DrawnFigure& one : page.drawn.figures) {
-      if (shown.size() < kShown && !one.figure.map) shown.insert(one.figure.id);
-    }
-    const auto is_shown = [&](const page::Figure& figure) { return shown.contains(figure.id); };
-    text_ += figure_group(page.drawn, is_shown);
-    std::string findings;
-    for (const std::string& words : chapter.paragraphs) findings += page::paragraph(text::html(words));
-    for (const page::NumberTable& table : chapter.tables) findings += number_table(table);
-    text_ += page::fold("What was done and found", findings);
-    text_ += page::fold("Further figures", figure_group(page.drawn, std::not_fn(is_shown)));
-    if (!page.left_out.empty()) text_ += page::fold("What was left out, and why", left_out_list(page.left_out));
-    text_ += "</section>\n";
-  }
-
-  static std::string number_table(const page::NumberTable& numbers) {
-    HtmlTable table(numbers.columns.size() > 3 ? HtmlTable::Shape::kWide : HtmlTable::Shape::kNarrow);
-    const auto kind = [](std::size_t column) { return column == 0 ? kText : kNumber; };
-    for (std::size_t i = 0; i < numbers.columns.size(); ++i) table.column(text::html(numbers.columns[i]), kind(i));
-    for (const std::vector<std::string>& row : numbers.rows) {
-      table.row();
-      for (std::size_t i = 0; i < row.size(); ++i) table.cell(page::prose(text::html(row[i])), kind(i));
-    }
-    return page::paragraph("<strong>" + page::prose(text::html(numbers.title)) + "</strong>") + table.text() + '\n';
-  }
-
-  // The first sentence that is no list of numbers. A full stop ends a sentence if a capital follows.
-  static std::string opening_sentence(const std::string& text) {
-    std::size_t begin = 0;
-    for (std::size_t at = text.find(". "); at != std::string::npos; at = text.find(". ", at + 1)) {
-      if (at + 2 >= text.size() || std::isupper(static_cast<unsigned char>(text[at + 2])) == 0) continue;
-      const std::string sentence = text.substr(begin, at + 1 - begin);
-      if (sentence.find(';') == std::string::npos) return sentence;
-      begin = at + 2;
-    }
-    return text.substr(begin);
   }
 
   void define(const std::string& term, const std::string& meaning) {
@@ -533,11 +489,6 @@ class PageWriter {
       item(report_.scenes.size() == 1 ? file_name(report_.scenes.front(), table) : "SCENE_" + std::string(table.file),
            std::string(table.holds));
     }
-    for (const page::Chapter& chapter : report_.chapters) {
-      for (const auto* files : {&chapter.values, &chapter.times}) {
-        for (const page::CsvFile& table : *files) item(table.file, table.holds);
-      }
-    }
     list += "</ul>\n";
     if (report_.scenes.size() < 2) return list;
     std::vector<std::string> names;
@@ -548,28 +499,14 @@ class PageWriter {
   }
 
   const StudyReport& report_;
-  const Pages& pages_;
+  const std::vector<Page>& pages_;
   std::string text_;
 };
 
 }  // namespace
 
-std::string figure_group(const page::DrawnFigures& drawn, const WantsFigure& wants, bool maps) {
-  std::string group;
-  for (const page::DrawnFigure& one : drawn.figures) {
-    if (!one.svg.empty() && wants(one.figure)) group += figure_text(one);
-  }
-  if (group.empty()) return {};
-  return std::string("<div class=\"figures") + (maps ? " maps" : "") + "\">\n" + group + "</div>\n";
+std::string report_page(const StudyReport& report, const std::vector<Page>& pages) {
+  return PageWriter(report, pages).write();
 }
-
-std::string left_out_list(const std::vector<LeftOut>& items) {
-  std::string text = "<ul>\n";
-  for (const LeftOut& item : items)
-    text += "<li>" + page::prose(text::html(item.what) + ": " + text::html(item.why)) + ".</li>\n";
-  return text + "</ul>\n";
-}
-
-std::string report_page(const StudyReport& report, const Pages& pages) { return PageWriter(report, pages).write(); }
 
 }  // namespace exactff::report

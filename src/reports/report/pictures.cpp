@@ -1,5 +1,4 @@
-#include "report/pictures.h"
-
+// The pictures at the head of a chapter, and one receiver's view of one source.
 #include <algorithm>
 #include <array>
 #include <cmath>

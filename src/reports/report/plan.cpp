@@ -5,15 +5,14 @@
 #include <cctype>
 #include <fstream>
 #include <iterator>
-#include <type_traits>
 
 #include "exactff/version.h"
 #include "files/file.h"
 #include "files/parallel.h"
 #include "kernel/float_environment.h"
-#include "page/chapter.h"
 #include "page/output_folder.h"
 #include "report/report.h"
+#include "study/runs.h"
 #include "text/hashes.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -41,18 +40,6 @@ std::string file_word(const std::string& title, const std::vector<PlannedScene>&
   }
 }
 
-page::Chapter run_experiment(const experiments::Experiment& experiment, const Effort& effort, jobs::Journal& journal,
-                             const Hooks& hooks) {
-  const std::string key = "experiment/" + std::string(experiment.name) + (effort.abridged ? "-abridged" : "");
-  if (const auto bytes = journal.find(key)) {
-    if (auto chapter = page::chapter_of(*bytes)) return std::move(*chapter);
-  }
-  const int threads = effort.threads > 0 ? effort.threads : files::usable_threads();
-  page::Chapter chapter = experiment.run({effort.abridged, threads}, hooks);
-  journal.add(key, page::to_bytes(chapter));
-  return chapter;
-}
-
 // Progress of a scene's study is shown under the scene's title.
 Hooks with_title(const PlannedScene& scene, const Hooks& hooks) {
   if (scene.name.empty() || !hooks.progress) return hooks;
@@ -78,57 +65,17 @@ Outcome outcome_of(const StudyReport& report) {
   return outcome;
 }
 
-// Everything that the values and the words of a report depend on; not threads or the engine.
-class Identity {
- public:
-  template <class... Parts>
-  void add(const Parts&... parts) {
-    (add_one(parts), ...);
-  }
-  [[nodiscard]] std::string digits() const { return hash_.digits(); }
-
- private:
-  void add_one(const std::string& text) {
-    hash_.add(std::uint64_t{text.size()});
-    hash_.add_bytes(text);
-  }
-  void add_one(double number) { hash_.add(number); }
-  template <class Number>
-  requires std::is_integral_v<Number> || std::is_enum_v<Number>
-  void add_one(Number number) { hash_.add(static_cast<std::uint64_t>(number)); }
-  template <class Item>
-  void add_one(const std::vector<Item>& list) {
-    add(list.size());
-    for (const Item& item : list) add(item);
-  }
-  template <class Value>
-  void add_one(const std::optional<Value>& value) {
-    add(value.has_value());
-    if (value) add(*value);
-  }
-  void add_one(const Vec3& v) { hash_.add(v); }
-  void add_one(const LeftOut& item) { add(item.what, item.why); }
-  void add_one(const Receiver& r) { add(r.point, r.normal, r.on, r.id); }
-  void add_one(const methods::Choice& choice) { add(choice.text()); }
-  void add_one(const study::Ladder& ladder) { add(ladder.name, ladder.along, ladder.rungs); }
-  void add_one(const render::Camera& camera) { add(camera.eye, camera.look, camera.up, camera.fov); }
-  void add_one(const study::Sweeps& s) { add(s.enabled, s.eps_b, s.eps_a, s.rays, s.seeds, s.patterns, s.variants); }
-  void add_one(const study::MethodSweep& m) { add(m.enabled, m.ladders, m.seeds, m.receivers, m.budget); }
-  void add_one(const PlannedScene& scene) {
-    const study::Request& request = scene.request;
-    add(scene.name, scene.title, scene.scene->hash(), request.scene_name, request.receivers_name, request.receivers);
-    for (const Selection& source : request.sources) add(scene.scene->name_of(source));
-    add(request.sweeps, request.methods, request.sweep_budget, request.seconds_for_a_time, request.camera, request.up);
-  }
-
-  text::Fnv1a hash_;
-};
-
 // The line of the page that says what was asked for: a finished folder of the same request need not be computed again.
 std::string identity_line(const Plan& plan) {
-  Identity identity;
-  identity.add(std::string(kVersion), plan.title, plan.scenes, plan.experiments, plan.left_out, plan.effort.abridged);
-  return "<!-- request " + identity.digits() + " -->";
+  text::Fnv1a hash;
+  const auto add = [&](const std::string& text) {
+    hash.add(std::uint64_t{text.size()});
+    hash.add_bytes(text);
+  };
+  add(std::string(kVersion));
+  add(plan.flags);
+  for (const PlannedScene& scene : plan.scenes) add(scene.title + '\n' + study::text_of_exact_values(scene.request));
+  return "<!-- request " + hash.digits() + " -->";
 }
 
 std::filesystem::path page_in(const std::filesystem::path& folder) { return folder / page::kReportFile; }
@@ -141,42 +88,13 @@ void write_tables(const SceneChapter& scene, const std::filesystem::path& folder
   }
 }
 
-void write_tables(const page::Chapter& chapter, const std::filesystem::path& folder) {
-  for (const auto* list : {&chapter.values, &chapter.times}) {
-    for (const page::CsvFile& table : *list) {
-      files::write_file(folder / table.file, [&](std::ostream& out) { out << table.csv; });
-    }
-  }
-}
-
 }  // namespace
-
-std::vector<std::string> experiment_names() {
-  std::vector<std::string> names;
-  for (const experiments::Experiment& one : experiments::all_experiments()) names.emplace_back(one.name);
-  return names;
-}
 
 void Plan::add_scene(std::string scene_title, std::shared_ptr<const Scene> scene, study::Request request,
                      std::vector<Problem> warnings) {
   std::string name = file_word(scene_title, scenes);
   scenes.push_back(
       {std::move(name), std::move(scene_title), std::move(scene), std::move(request), std::move(warnings)});
-}
-
-void Plan::add_experiments(const std::vector<std::string>& names) {
-  const auto add = [&](const std::string& name) {
-    if (std::ranges::find(experiments, name) == experiments.end()) experiments.push_back(name);
-  };
-  for (const std::string& name : names) {
-    if (name == "all") {
-      for (const experiments::Experiment& one : experiments::all_experiments()) {
-        if (!one.by_name_only) add(std::string(one.name));
-      }
-    } else {
-      add(std::string(experiments::experiment_named(name).name));
-    }
-  }
 }
 
 std::vector<std::string> write(const StudyReport& report, const std::filesystem::path& folder, const Hooks& hooks) {
@@ -193,18 +111,14 @@ std::vector<std::string> write(const StudyReport& report, const std::filesystem:
     std::ranges::move(drawn.left_out, std::back_inserter(left_out));
     return Page{std::move(drawn), std::move(left_out)};
   };
-  Pages pages;
+  std::vector<Page> pages;
   for (const SceneChapter& scene : report.scenes) {
     write_tables(scene, staged.path(), hooks);
     std::vector<LeftOut> left_out = scene.study.left_out;
     std::vector<page::Figure> wanted = figures(scene.study, left_out);
     std::optional<Strip> strip = strip_of(scene.study, left_out, hooks);
-    pages.scenes.push_back(draw(std::move(wanted), std::move(left_out), scene.name));
-    pages.scenes.back().strip = std::move(strip);
-  }
-  for (const page::Chapter& chapter : report.chapters) {
-    write_tables(chapter, staged.path());
-    pages.chapters.push_back(draw(chapter.figures, chapter.left_out, chapter.name));
+    pages.push_back(draw(std::move(wanted), std::move(left_out), scene.name));
+    pages.back().strip = std::move(strip);
   }
   files::write_file(staged.path() / page::kReportFile, [&](std::ostream& out) { out << report_page(report, pages); });
   files::require_not_cancelled(hooks);
@@ -214,13 +128,6 @@ std::vector<std::string> write(const StudyReport& report, const std::filesystem:
 
 Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::Journal& journal, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
-  if (plan.scenes.empty() && plan.experiments.empty()) {
-    text::refuse(
-        plan.left_out.empty() ? "the report has no scene and no experiment" : "every scene of the study is left out",
-        plan.left_out.empty() ? "there is nothing to do"
-                              : "an abridged report leaves out the scenes marked --unless-abridged",
-        plan.left_out.empty() ? "add a scene or an experiment" : "remove --abridged, or mark fewer scenes");
-  }
   if (!plan.vtk.empty() && plan.scenes.size() != 1) {
     text::refuse("the report has " + text::counted(plan.scenes.size(), "scene") + ", and --vtk one file",
                  "a file shows the receivers of one scene", "compare each scene by itself, or leave out --vtk");
@@ -229,12 +136,8 @@ Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::J
   report.title = plan.title;
   report.command_line = plan.command_line;
   report.identity = identity_line(plan);
-  report.left_out = plan.left_out;
   for (const PlannedScene& scene : plan.scenes) {
     report.scenes.push_back({scene.name, scene.title, study::run(scene.request, with_title(scene, hooks), &journal)});
-  }
-  for (const std::string& name : plan.experiments) {
-    report.chapters.push_back(run_experiment(experiments::experiment_named(name), plan.effort, journal, hooks));
   }
   if (!plan.vtk.empty()) write_vtk(report.scenes.front().study, plan.vtk, hooks);
   Outcome outcome = outcome_of(report);

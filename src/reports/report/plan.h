@@ -9,11 +9,8 @@
 #include "exactff/error.h"
 #include "exactff/jobs.h"
 #include "exactff/study.h"
-#include "experiments/experiments.h"
 
 namespace exactff::report {
-
-using experiments::Effort;
 
 struct PlannedScene {
   std::string name;   // letters, digits and hyphens, for the names of files; empty: the report is on this scene alone
@@ -23,26 +20,19 @@ struct PlannedScene {
   std::vector<Problem> warnings;  // for the user, of how the request was made
 };
 
-// What a report is to cover: scenes, and experiments that bring their own scenes.
+// What a report is to cover.
 struct Plan {
   std::string title;  // of the report; empty: that of the only scene
   std::vector<PlannedScene> scenes;
-  std::vector<std::string> experiments;  // names
-  std::vector<LeftOut> left_out;         // scenes that an abridged report leaves out
-  Effort effort;
-  std::string command_line;                       // shown in the last section of the report
-  std::filesystem::path vtk;                      // the file of write_vtk for the only scene; empty: none
+  std::string flags;          // all that the values depend on beside the scenes and their receivers, as it was given
+  std::string command_line;   // shown in the last section of the report
+  std::filesystem::path vtk;  // the file of write_vtk for the only scene; empty: none
   std::vector<std::filesystem::path> files_read;  // of the scenes in a study file, and their receivers
 
   // Gives the scene a name that no other has.
   void add_scene(std::string scene_title, std::shared_ptr<const Scene> scene, study::Request request,
                  std::vector<Problem> warnings = {});
-  // "all" stands for every experiment but those that take long. Drops repetitions. Throws InputError for an unknown
-  // name.
-  void add_experiments(const std::vector<std::string>& names);
 };
-
-[[nodiscard]] std::vector<std::string> experiment_names();
 
 // What a finished report in a folder tells about itself.
 enum class Finished {
@@ -63,7 +53,7 @@ struct Outcome {
   std::vector<std::string> notes;  // such as a missing gnuplot
 };
 
-// Runs every study and experiment of the plan and writes one report on all of them, as study::write_report does. The
+// Runs every study of the plan and writes one report on all of them, as study::write_report does. The
 // files of a scene begin with its name and an underscore. What is finished is kept in `journal`, which is to be removed
 // when everything is done.
 Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::Journal& journal,

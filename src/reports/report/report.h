@@ -1,10 +1,8 @@
-// A report on several studies, and on experiments that do not concern one scene: its tables, figures, pictures and
-// page.
+// A report on several studies: its tables, figures, pictures and page.
 #pragma once
 
 #include <array>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,7 +11,7 @@
 #include "exactff/methods.h"
 #include "exactff/study.h"
 #include "exactff/table.h"
-#include "page/chapter.h"
+#include "page/gnuplot.h"
 
 namespace exactff::report {
 
@@ -43,10 +41,8 @@ struct SceneChapter {
 struct StudyReport {
   std::string title;  // empty: the title of the only scene
   std::vector<SceneChapter> scenes;
-  std::vector<page::Chapter> chapters;
   std::string command_line;
-  std::string identity;           // a line of the page that says what was asked for ; may be empty
-  std::vector<LeftOut> left_out;  // scenes and chapters
+  std::string identity;  // a line of the page that says what was asked for; may be empty
 };
 
 // As study::write_report, but the files of a scene begin with its name and an underscore.
@@ -114,27 +110,23 @@ struct Shown {
 // all times have been measured. Throws Cancelled.
 [[nodiscard]] std::optional<Strip> strip_of(const Study& study, std::vector<LeftOut>& left_out, const Hooks& hooks);
 
+// A picture of one receiver's view of one source, as a self-contained SVG document: each plane of the source as seen
+// from x, the projected occluders, the exact visible region. With `sampled`, it shows the leaves in its leaf_list.
+// Leaves that are not in the list, and planes that x does not face, are left out, with a note.
+[[nodiscard]] std::string visibility_svg(const Scene& scene, const Receiver& receiver, const ExactSource& source,
+                                         const FormFactor& result, const AdaptiveResult* sampled = nullptr);
+
 // --- the page ---
 
-// What belongs to each scene and each chapter of a report, in their order.
+// What belongs to a scene of a report.
 struct Page {
   page::DrawnFigures drawn;
-  std::vector<LeftOut> left_out;  // from the study or chapter, and from its figures
+  std::vector<LeftOut> left_out;  // from the study, and from its figures
   std::optional<Strip> strip = {};
 };
 
-struct Pages {
-  std::vector<Page> scenes;
-  std::vector<Page> chapters;
-};
-
-// The report as one HTML page that loads nothing and has no scripts.
-[[nodiscard]] std::string report_page(const StudyReport& report, const Pages& pages);
-
-// All figures that are wanted, as HTML; empty if there are none.
-using WantsFigure = std::function<bool(const page::Figure& figure)>;
-[[nodiscard]] std::string figure_group(const page::DrawnFigures& drawn, const WantsFigure& wants, bool maps = false);
-[[nodiscard]] std::string left_out_list(const std::vector<LeftOut>& items);
+// The report as one HTML page that loads nothing and has no scripts. `pages`: of the scenes, in their order.
+[[nodiscard]] std::string report_page(const StudyReport& report, const std::vector<Page>& pages);
 
 // --- Verdicts ---
 

@@ -235,19 +235,6 @@ Table method_table(const Study& study, table::Head head) {
   return rows.take();
 }
 
-Table seed_table(const Study& study, table::Head head) {
-  Rows rows("compare seeds", std::move(head),
-            {keys("method,setting"), keys("seed", Type::kCount), estimates("rms,mean,p99,worst", "Ke")});
-  for (const MethodCell& cell : study.methods.cells) {
-    for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
-      put_choice(rows, study, cell);
-      rows << cell.seeds[s];
-      put_statistics(rows, study::error_statistics(cell.radiosity_errors[s]));
-    }
-  }
-  return rows.take();
-}
-
 Table method_value_table(const Study& study, table::Head head) {
   Rows rows("compare method values", std::move(head),
             {keys("method,setting"), keys("seed", Type::kCount), keys("receiver"), certified("exact"),
@@ -286,12 +273,11 @@ Table receiver_table(const Study& study, table::Head head) {
   }
   Rows rows("compare receivers", std::move(head),
             {keys("receiver"), place(), texts("sight", Strength::kProved), certified("visible_fraction"),
-             estimates("radiosity", "Ke"), estimates("distance_to_shadow_edge", "length"), errors});
+             estimates("radiosity", "Ke"), errors});
   for (std::size_t i = 0; i < study.exact.size(); ++i) {
     const ExactRow& exact = study.exact[i];
     rows << study.request.receivers[i].id << study.request.receivers[i].point << to_string(exact.sight)
-         << exact.visible_fraction << exact.radiosity.largest()
-         << (study.edge_distance.empty() ? std::nullopt : std::optional(study.edge_distance[i]));
+         << exact.visible_fraction << exact.radiosity.largest();
     for (const MethodField& field : study.methods.fields) rows << field.radiosity_errors[i];
   }
   return rows.take();
@@ -400,7 +386,6 @@ const std::vector<StudyTable>& tables() {
        summary_timing_table, has_settings},
       {"methods.csv", "one row per method and setting at chosen receivers: work and errors in radiosity over the seeds",
        method_table, has_cells},
-      {"method_seeds.csv", "the same for every seed", seed_table, has_cells},
       {"method_values.csv", "the values of the first seed, receiver by receiver", method_value_table, has_cells},
       {"slopes.csv", "how the error falls with the work: error = c * work^exponent, with 95 % confidence intervals",
        slope_table, has_cells},

@@ -5,8 +5,8 @@
 //   3. Take the exact visible region with its corners rounded to doubles, and evaluate Eq. (4) over it in three ways.
 //   4. Run Tampieri's algorithm, mended and literal. Its tolerance eps_B is a ten-thousandth of the unoccluded form
 //      factor: the choice of a user who knows roughly what to expect.
-//   5. Measure times: the median of several calls within a time limit.
-// The place of a scene in the report is its index, so that nothing but the times depends on the number of threads.
+//   5. Measure the time of the exact method: the median of several calls.
+// The place of a scene in the report is its index, so that nothing but that time depends on the number of threads.
 #include "stress/stress.h"
 
 #include <algorithm>
@@ -14,18 +14,85 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numbers>
 
 #include "exactff/adaptive.h"
 #include "files/parallel.h"
 #include "files/stopwatch.h"
 #include "kernel/ball.h"
 #include "kernel/float_environment.h"
-#include "stress/families.h"
+#include "kernel/vec.h"
+#include "table/rows.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
 namespace exactff::stress {
+
+using kernel::cross;
+using kernel::dot;
+using kernel::length;
+
 namespace {
+
+// --- Eq. (4) in double ---
+
+// Eq. (4) of F. Tampieri (1992) in plain double, in the three forms that programs use: the results of careful and of
+// careless code. Each estimates the form factor of a region from its boundary.
+
+enum class AngleFormula {
+  kAcos,             // unit vectors a and b, acos(a . b), a x b
+  kAtan2,            // atan2(|a x b|, a . b)
+  kAtan2Difference,  // the same, but a x b is computed as a x (b - a)
+};
+
+// A closed polygon, counter-clockwise seen from the front of the source; holes are clockwise.
+using Polygon = std::vector<Vec3>;
+
+Vec3 unit(const Vec3& a) {
+  const double r = length(a);
+  return {a.x / r, a.y / r, a.z / r};
+}
+
+double term_by_acos(const Vec3& a, const Vec3& b, const Vec3& n) {
+  const Vec3 p = unit(a), q = unit(b);
+  const Vec3 c = cross(p, q);
+  const double sine = length(c);
+  return sine == 0.0 ? 0.0 : std::acos(std::clamp(dot(p, q), -1.0, 1.0)) * dot(n, c) / sine;
+}
+
+double term_by_atan2(const Vec3& a, const Vec3& b, const Vec3& a_cross_b, const Vec3& n) {
+  const double sine = length(a_cross_b);
+  return sine == 0.0 ? 0.0 : std::atan2(sine, dot(a, b)) * dot(n, a_cross_b) / sine;
+}
+
+double term(const Vec3& a, const Vec3& b, const Vec3& n, AngleFormula formula) {
+  switch (formula) {
+    case AngleFormula::kAcos:
+      return term_by_acos(a, b, n);
+    case AngleFormula::kAtan2:
+      return term_by_atan2(a, b, cross(a, b), n);
+    case AngleFormula::kAtan2Difference:
+      break;
+  }
+  return term_by_atan2(a, b, cross(a, kernel::difference(b, a)), n);
+}
+
+// -1/(2 pi |n|) times the sum over the edges of angle n . (a x b) / |a x b|, with a and b relative to x. Nothing is
+// clamped, but the angle of two unit vectors is 0 or pi if their product rounds beyond 1. An edge with a x b = 0 adds
+// nothing.
+double form_factor_in_double(std::span<const Polygon> region, const Vec3& x, const Vec3& normal, AngleFormula formula) {
+  const Vec3 n = unit(normal);
+  double sum = 0.0;
+  for (const Polygon& polygon : region) {
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      sum +=
+          term(kernel::difference(polygon[i], x), kernel::difference(polygon[(i + 1) % polygon.size()], x), n, formula);
+    }
+  }
+  return -0.5 * std::numbers::inv_pi * sum;
+}
+
+// --- trials ---
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kTruthDigits = 40;
@@ -38,13 +105,6 @@ double relative_difference(double value, const Enclosure& truth, const Enclosure
   const double error =
       std::abs(kernel::nearest_to_midpoint((kernel::to_ball(value, kBits) - at_bits(truth)) / at_bits(scale)));
   return error < kTruthIsGoodTo ? 0.0 : error;
-}
-
-template <class Compute>
-double median_seconds(const Compute& compute) {
-  constexpr std::size_t kMostCalls = 7;
-  constexpr double kLimit = 0.05;
-  return files::median_seconds(compute, kMostCalls, kLimit);
 }
 
 class Trial {
@@ -78,18 +138,21 @@ class Trial {
     const std::vector<FaceId> none;
     unoccluded_ = exact({.digits = kTruthDigits, .only_occluders = &none}).enclosure;
     row_.tolerance = kToleranceShare * unoccluded_.upper();
-    row_.truth = case_.truth ? case_.truth->value() : exact({.digits = kTruthDigits}).enclosure;
+    row_.truth = case_.truth ? *case_.truth : exact({.digits = kTruthDigits}).enclosure;
     // A ball of radius 0 about 0 is a proved zero.
     zero_ = row_.truth.lower() == 0.0 && row_.truth.upper() == 0.0;
     row_.agrees = row_.truth.nearest() == result.value && row_.truth.overlaps(result.enclosure) &&
                   (result.status == Status::kZero) == zero_;
-    record(Method::kExact, result.value, median_seconds([&] { (void)exact(); }));
+    record(Method::kExact, result.value);
+    constexpr std::size_t kMostCalls = 7;
+    constexpr double kLimit = 0.05;  // seconds of all calls
+    row_.exact_seconds = files::median_seconds([&] { (void)exact(); }, kMostCalls, kLimit);
   }
 
-  void record(Method method, double value, double seconds) {
+  void record(Method method, double value) {
     const double error = relative_difference(value, row_.truth, zero_ ? unoccluded_ : row_.truth);
     const double number = std::isnan(value) ? std::numeric_limits<double>::quiet_NaN() : value;  // avoids -nan
-    answer(method) = {.refused = false, .value = number, .error = error, .seconds = seconds};
+    answer(method) = {.refused = false, .value = number, .error = error};
   }
 
   [[nodiscard]] std::vector<Polygon> region() const {
@@ -102,16 +165,7 @@ class Trial {
 
   void run_formula(Method method, AngleFormula formula) {
     if (polygons_.empty()) polygons_ = region();
-    const auto compute = [&] {
-      return form_factor_in_double(polygons_, case_.receiver.point, case_.receiver.normal, formula);
-    };
-    constexpr int kCalls = 32;  // a single call is shorter than the resolution of the clock
-    const double value = compute();
-    const double seconds = median_seconds([&] {
-      volatile double kept = 0.0;
-      for (int i = 0; i < kCalls; ++i) kept = kept + compute();
-    });
-    record(method, value, seconds / kCalls);
+    record(method, form_factor_in_double(polygons_, case_.receiver.point, case_.receiver.normal, formula));
   }
 
   void run_adaptive() {
@@ -124,13 +178,11 @@ class Trial {
       for (const auto& [method, variant] :
            {std::pair{Method::kAdaptive, Variant::kMended}, {Method::kAdaptiveLiteral, Variant::kLiteral}}) {
         options.variant = variant;
-        const auto compute = [&] { return solver.form_factor(case_.receiver, source, 1.0, options).form_factor; };
-        const double value = compute();
-        record(method, value, median_seconds([&] { (void)compute(); }));
+        record(method, solver.form_factor(case_.receiver, source, 1.0, options).form_factor);
       }
     } catch (const InputError&) {
       for (Method method : {Method::kAdaptive, Method::kAdaptiveLiteral}) {
-        answer(method) = {.refused = true, .value = 0.0, .error = kInfinity, .seconds = 0.0};
+        answer(method) = {.refused = true, .value = 0.0, .error = kInfinity};
       }
     }
   }
@@ -146,14 +198,14 @@ class Trial {
 
 [[noreturn]] void refuse_family(const std::string& name) {
   std::vector<std::string> names;
-  for (const Family& family : all_families()) names.emplace_back(family.info.name);
+  for (const Family& family : all_families()) names.emplace_back(family.name);
   text::refuse("there is no family '" + name + "'", {},
                "exactff stress --list prints them all: " + text::enumerate(names));
 }
 
 const Family& family_named(const std::string& name) {
   for (const Family& family : all_families()) {
-    if (family.info.name == name) return family;
+    if (family.name == name) return family;
   }
   refuse_family(name);
 }
@@ -177,7 +229,7 @@ void keep_finished(std::span<const std::atomic<std::size_t>> rows, Report& repor
     if (rows[i] == family.rows.size()) {
       kept.push_back(std::move(family));
     } else {
-      report.unfinished.emplace_back(family.family.name);
+      ++report.unfinished;
     }
   }
   if (kept.empty()) throw Cancelled();
@@ -219,23 +271,23 @@ bool next_is_refused(const FamilyResult& result, Method method, double reach) {
 
 }  // namespace
 
-Report run(Request request, const Hooks& hooks) {
+Report run(const Request& request, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
-  if (request.threads <= 0) request.threads = files::usable_threads();
-  Report report{std::move(request), {}, {}};
+  const int threads = request.threads > 0 ? request.threads : files::usable_threads();
+  Report report;
   struct ScenePlace {
     const Family* family;
     std::size_t result, row;
   };
   std::vector<ScenePlace> places;
-  for (const Family* family : select_families(report.request.families)) {
+  for (const Family* family : select_families(request.families)) {
     const std::size_t count = family->stiffnesses.size();
     for (std::size_t row = 0; row < count; ++row) places.push_back({family, report.families.size(), row});
-    report.families.push_back({family->info, std::vector<Row>(count)});
+    report.families.push_back({family, std::vector<Row>(count)});
   }
   std::vector<std::atomic<std::size_t>> finished(report.families.size());  // rows
   try {
-    files::parallel_for(places.size(), report.request.threads, "stiff scenes", hooks, [&](std::size_t i) {
+    files::parallel_for(places.size(), threads, "stiff scenes", hooks, [&](std::size_t i) {
       const ScenePlace& place = places[i];
       const Case scene_case = place.family->make(place.family->stiffnesses[place.row]);
       Trial(scene_case, report.families[place.result].rows[place.row]).run();
@@ -254,15 +306,6 @@ std::string_view to_string(Evidence evidence) {
 
 std::string_view name_of(Method method) { return kMethodNames[static_cast<std::size_t>(method)].name; }
 std::string_view short_name_of(Method method) { return kMethodNames[static_cast<std::size_t>(method)].short_name; }
-
-const std::vector<FamilyInfo>& families() {
-  static const std::vector<FamilyInfo> list = [] {
-    std::vector<FamilyInfo> infos;
-    for (const Family& family : all_families()) infos.push_back(family.info);
-    return infos;
-  }();
-  return list;
-}
 
 double usable_up_to(const FamilyResult& result, Method method, double threshold) {
   return good_up_to(result, [&](const Row& row) { return row.of(method).error < threshold; });  // not NaN
@@ -318,6 +361,155 @@ std::string reaches_text(const FamilyResult& result, Method method) {
     if (text == "all · all · all") return "all";
   }
   return next_is_refused(result, method, reach) ? text + " (refused)" : text;
+}
+
+// --- what was found ---
+
+namespace {
+
+constexpr int kPrintedDigits = 30;
+constexpr std::optional<double> kNone;
+
+}  // namespace
+
+table::Table table_of(const Report& report) {
+  table::Head head;
+  head.set("about", std::string("every family, stiffness and method"));
+  head.set("error",
+           std::string("|value - truth| / truth; where the truth is 0, |value| over the unoccluded form factor; "
+                       "0 below truth_is_good_to; no value where the method refuses the scene"));
+  head.set("truth_is_good_to", kTruthIsGoodTo);
+  head.set("tampieri", "eps_B " + text::shortest(kToleranceShare) + " of the unoccluded form factor, " +
+                           std::to_string(kRays) + " jittered rays, seed 1");
+  table::Columns answers;
+  for (const Method method : kMethods) {
+    const auto strength = method == Method::kExact ? table::Strength::kCertified : table::Strength::kEstimated;
+    const std::string name(short_name_of(method));
+    answers.push_back({name + "_value", table::Type::kNumber, "", strength});
+    answers.push_back({name + "_error", table::Type::kNumber, "", table::Strength::kEstimated});
+  }
+  table::Rows rows(
+      "stress values", std::move(head),
+      {table::keys("family"), table::keys("stiffness", table::Type::kNumber), table::texts("truth,evidence"),
+       table::flags("agrees"), table::texts("status", table::Strength::kProved),
+       table::counts("precision_bits,occluders,edges"), answers, table::texts("refused_by")});
+  for (const FamilyResult& family : report.families) {
+    for (const Row& r : family.rows) {
+      rows << family.family->name << r.stiffness << r.truth.decimals(kPrintedDigits).value_or(r.truth.midpoint())
+           << to_string(family.family->evidence) << r.agrees << exactff::to_string(r.status) << r.precision_bits
+           << r.occluders << r.edges;
+      std::string refused_by;
+      for (const Method method : kMethods) {
+        const Answer& answer = r.of(method);
+        if (answer.refused) {
+          refused_by += (refused_by.empty() ? "" : " ") + std::string(short_name_of(method));
+          rows << kNone << kNone;
+        } else {
+          rows << answer.value << answer.error;
+        }
+      }
+      rows << refused_by;
+    }
+  }
+  return rows.take();
+}
+
+namespace {
+
+struct Tally {
+  std::size_t independent = 0;  // compared with a closed form or a symmetry
+  std::size_t agreeing = 0;     // of these
+  std::size_t certified = 0;    // compared with the exact method's own enclosure
+  int most_bits = 0;
+  double smallest = std::numeric_limits<double>::infinity();  // smallest positive form factor with an independent truth
+};
+
+Tally tally(const Report& report) {
+  Tally t;
+  for (const FamilyResult& family : report.families) {
+    const bool independent = family.family->evidence != Evidence::kCertified;
+    for (const Row& row : family.rows) {
+      ++(independent ? t.independent : t.certified);
+      t.most_bits = std::max(t.most_bits, row.precision_bits);
+      if (!independent) continue;
+      t.agreeing += row.agrees ? 1U : 0U;
+      const double value = row.of(Method::kExact).value;
+      if (value > 0.0) t.smallest = std::min(t.smallest, value);
+    }
+  }
+  return t;
+}
+
+std::string exact_sentence(const Report& report) {
+  const Tally t = tally(report);
+  std::string text;
+  if (t.independent > 0) {
+    text = "The exact value agrees with an independent closed form or symmetry, rounded to a double, in " +
+           text::counted_of(t.agreeing, t.independent, "scene");
+    if (std::isfinite(t.smallest)) text += ", down to a form factor of " + text::rounded(t.smallest, 2);
+    text += t.certified > 0 ? "; " : ". ";
+  }
+  if (t.certified > 0) {
+    text += (text.empty() ? "In " : "in ") + text::counted(t.certified, "scene") +
+            " no independent value exists; there it is compared with its own enclosure at higher precision. ";
+  }
+  if (t.most_bits > 0) text += "The proof needed at most " + std::to_string(t.most_bits) + " bits.";
+  return text;
+}
+
+bool to_the_end(const FamilyResult& family, Method method, double threshold) {
+  return usable_up_to(family, method, threshold) == family.rows.back().stiffness;
+}
+
+std::size_t families_kept(const Report& report, Method method, double threshold) {
+  return static_cast<std::size_t>(
+      std::count_if(report.families.begin(), report.families.end(),
+                    [&](const FamilyResult& family) { return to_the_end(family, method, threshold); }));
+}
+
+std::size_t refusals(const Report& report, Method method) {
+  std::size_t count = 0;
+  for (const FamilyResult& family : report.families) {
+    count += static_cast<std::size_t>(
+        std::count_if(family.rows.begin(), family.rows.end(), [&](const Row& row) { return row.of(method).refused; }));
+  }
+  return count;
+}
+
+std::string thresholds_kept(const Report& report, Method method) {
+  return " keeps its error below 10⁻³ to the end in " + std::to_string(families_kept(report, method, kThresholds[0])) +
+         " of " + text::counted(report.families.size(), "family", "families") + ", below 10⁻⁶ in " +
+         std::to_string(families_kept(report, method, kThresholds[1])) + " and below 10⁻¹² in " +
+         std::to_string(families_kept(report, method, kThresholds[2]));
+}
+
+std::string tolerance_kept(const Report& report, Method method) {
+  const auto kept = std::count_if(report.families.begin(), report.families.end(), [&](const FamilyResult& family) {
+    return kept_up_to(family, method) == family.rows.back().stiffness;
+  });
+  return " keeps the tolerance that it was given (" + text::rounded(kToleranceShare) +
+         " of the unoccluded form factor) to the end in " + std::to_string(kept) + " of " +
+         text::counted(report.families.size(), "family", "families");
+}
+
+std::string method_sentence(const Report& report, Method method) {
+  std::string text = std::string(name_of(method)) +
+                     (has_tolerance(method) ? tolerance_kept(report, method) : thresholds_kept(report, method));
+  if (const std::size_t refused = refusals(report, method); refused > 0) {
+    text += "; it refuses " + text::counted(refused, "scene") + " because single precision would merge corners";
+  }
+  return text + '.';
+}
+
+}  // namespace
+
+std::vector<std::string> headlines(const Report& report) {
+  const kernel::StandardArithmetic arithmetic;
+  std::vector<std::string> sentences = {exact_sentence(report)};
+  for (Method method : kMethods) {
+    if (method != Method::kExact) sentences.push_back(method_sentence(report, method));
+  }
+  return sentences;
 }
 
 }  // namespace exactff::stress

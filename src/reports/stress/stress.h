@@ -8,7 +8,7 @@
 
 #include <array>
 #include <cstddef>
-#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,8 +16,9 @@
 #include "exactff/enclosure.h"
 #include "exactff/exact.h"
 #include "exactff/jobs.h"
+#include "exactff/receiver.h"
+#include "exactff/scene.h"
 #include "exactff/table.h"
-#include "page/chapter.h"
 
 namespace exactff::stress {
 
@@ -29,14 +30,26 @@ enum class Evidence {
 };
 [[nodiscard]] std::string_view to_string(Evidence evidence);
 
-struct FamilyInfo {
+// A scene with its receiver and source, and what is known about the result.
+struct Case {
+  double stiffness = 1.0;
+  Scene scene;
+  Receiver receiver;
+  std::optional<Enclosure> truth;  // none: compared with the exact method's own enclosure
+};
+
+// A list of stiffnesses, and a function that makes the scene for one of them: one receiver, one patch `source`, one
+// patch `occluder`.
+struct Family {
   std::string_view name;  // the name for --family
   std::string_view title;
-  std::string_view stiffness;  // the meaning of the number
-  std::string_view about;      // what happens as it grows, and why that is hard
+  std::string_view stiffness;       // the meaning of the number
+  std::string_view about;           // what happens as it grows, and why that is hard
+  std::vector<double> stiffnesses;  // ascending
+  Case (*make)(double stiffness);
   Evidence evidence = Evidence::kClosedForm;
 };
-[[nodiscard]] const std::vector<FamilyInfo>& families();
+[[nodiscard]] const std::vector<Family>& all_families();  // in the order of the report
 
 enum class Method {
   kExact,
@@ -63,7 +76,6 @@ struct Answer {
   // |value - F| / F; if F is 0, |value| over the unoccluded form factor. Set to 0 if below kTruthIsGoodTo. NaN if the
   // value is NaN, infinite if the method refused the scene.
   double error = 0.0;
-  double seconds = 0.0;  // median of several calls, without preprocessing
 };
 
 struct Row {
@@ -71,6 +83,7 @@ struct Row {
   Enclosure truth;
   Status status = Status::kZero;  // status of the exact method
   int precision_bits = 0;         // precision that the certified value needed
+  double exact_seconds = 0.0;     // of the exact method, without preprocessing: median of several calls
   std::uint64_t occluders = 0;    // faces besides the source
   std::uint64_t edges = 0;        // of the visible region's boundary
   bool agrees = false;            // the exact value is the truth, rounded
@@ -81,7 +94,7 @@ struct Row {
 };
 
 struct FamilyResult {
-  FamilyInfo family;
+  const Family* family = nullptr;
   std::vector<Row> rows;  // in order of increasing stiffness
 };
 
@@ -106,13 +119,11 @@ inline constexpr std::array<double, 3> kThresholds = {1e-3, 1e-6, 1e-12};
 struct Request {
   std::vector<std::string> families;  // empty: all
   int threads = 0;                    // 0: as many as this process may use
-  std::string command_line;           // shown in the last section of the report
 };
 
 struct Report {
-  Request request;
   std::vector<FamilyResult> families;
-  std::vector<std::string> unfinished;  // names of the families that the hooks cut off; they are not among the others
+  std::size_t unfinished = 0;  // families that the hooks cut off; they are not among the others
 
   // True if every exact value is the truth, rounded, and none has the status kNotCertified.
   [[nodiscard]] bool sound() const;
@@ -121,16 +132,10 @@ struct Report {
 // Runs the families. Everything except the times depends on the request alone. If the hooks cancel, the result holds
 // the families that are finished. Throws Cancelled if there are none, and InputError if there is no family of a given
 // name.
-[[nodiscard]] Report run(Request request, const Hooks& hooks = {});
+[[nodiscard]] Report run(const Request& request, const Hooks& hooks = {});
 
-// Writes report.html, values.csv, summary.csv and timings.csv in the same way as study::write_report: all or nothing,
-// and only over an earlier result. Returns notes for the user, such as a missing gnuplot.
-std::vector<std::string> write(const Report& report, const std::filesystem::path& folder, const Hooks& hooks = {});
-
-// What write() leaves of a run that was interrupted: the same files in FOLDER.part, without figures, in milliseconds.
-// They say what is missing. A complete result in FOLDER stays; the next complete one removes FOLDER.part.
-[[nodiscard]] std::filesystem::path part_of(const std::filesystem::path& folder);
-void write_part(const Report& report, const std::filesystem::path& folder);
+// A row for each family and stiffness, with the values and errors of all methods. No byte depends on a clock.
+[[nodiscard]] table::Table table_of(const Report& report);
 
 // The main result in a few sentences.
 [[nodiscard]] std::vector<std::string> headlines(const Report& report);
@@ -148,21 +153,5 @@ void write_part(const Report& report, const std::filesystem::path& folder);
 // The same for every threshold: "10⁸ · 10⁵ · 100", or "all". Of a method with a tolerance: up to which stiffness it
 // keeps it. Adds "(refused)" if the method then refuses the scene.
 [[nodiscard]] std::string reaches_text(const FamilyResult& result, Method method);
-
-// --- the parts of the report ---
-
-struct StressTable {
-  std::string_view file;
-  std::string_view holds;  // for the report's list of files
-  table::Table (*make)(const Report& report);
-};
-// The CSV files, in the order of the report's list. Only timings.csv holds times.
-[[nodiscard]] const std::array<StressTable, 3>& tables();
-
-// Error, precision and time against the stiffness.
-[[nodiscard]] std::vector<page::Figure> figures(const FamilyResult& result);
-
-// One HTML page that loads nothing and has no scripts. `drawn` holds the figures of all families, in order.
-[[nodiscard]] std::string report_page(const Report& report, const page::DrawnFigures& drawn);
 
 }  // namespace exactff::stress

@@ -5,7 +5,7 @@
 //   3. Choose sweeps and ladders: defaults, without those that cannot affect the scene. Join them to one list of
 //      ladders, whose rungs are the settings, and plan how much of it is run (runs.h).
 //   4. Run the settings (runs.h).
-//   5. Find where visibility changes in kind; compute a profile along a line.
+//   5. Compute a profile along a line.
 //   6. Measure the times of every setting, with nothing else running.
 //   7. Compute statistics.
 // Threads share the receivers. The place of a result is its index, so nothing depends on the number of threads.
@@ -85,19 +85,6 @@ void fields(Words& words, ExactRow& row) {
   words(row.certified, row.sampled);
 }
 
-// Everything that the exact values depend on.
-std::string request_text(const Request& request) {
-  std::string text = request.scene->hash();
-  const auto put = [&](const std::string& part) { text += '\n' + part; };
-  for (const Receiver& r : request.receivers) {
-    for (const double c : {r.point.x, r.point.y, r.point.z, r.normal.x, r.normal.y, r.normal.z}) put(text::shortest(c));
-    for (const FaceId face : r.on) put(std::to_string(index_of(face)));
-    if (r.on.empty()) put("free");
-  }
-  for (const Selection& source : request.sources) put(request.scene->name_of(source));
-  return text;
-}
-
 class Runner {
  public:
   Runner(Request request, const Hooks& hooks, jobs::Journal* journal) : hooks_(hooks), journal_(journal) {
@@ -111,7 +98,7 @@ class Runner {
     choose_settings();
     plan_runs(study_, choose_ladders(), prepared_);
     run_settings();
-    if (request().methods.enabled) look_closer();
+    if (request().methods.enabled) draw_profile();
     measure_times(study_, hooks_);
     if (!study_.settings.empty()) study_.ray_setup_seconds = ray_setup_seconds();
     summarise();
@@ -140,7 +127,7 @@ class Runner {
       }
       require_moderate(of_all_sources, request());
     }
-    request_hash_ = jobs::short_hash(request_text(request()));
+    request_hash_ = jobs::short_hash(text_of_exact_values(request()));
   }
 
   void find_exact_values() {
@@ -247,14 +234,7 @@ class Runner {
     study::run_settings(study_, sources_, prepared_, kept, hooks_);
   }
 
-  void look_closer() {
-    auto edges = find_shadow_edges(request(), sources_, hooks_);
-    if (auto* why = std::get_if<LeftOut>(&edges)) {
-      leave_out({std::move(*why)});
-    } else {
-      study_.edge_distance = std::move(std::get<ShadowEdges>(edges).distance);
-      study_.edge_resolution = std::get<ShadowEdges>(edges).resolution;
-    }
+  void draw_profile() {
     auto profile = find_profile(study_, sources_, hooks_);
     if (auto* why = std::get_if<LeftOut>(&profile)) {
       leave_out({std::move(*why)});
@@ -287,6 +267,18 @@ class Runner {
 };
 
 }  // namespace
+
+std::string text_of_exact_values(const Request& request) {
+  std::string text = request.scene->hash();
+  const auto put = [&](const std::string& part) { text += '\n' + part; };
+  for (const Receiver& r : request.receivers) {
+    for (const double c : {r.point.x, r.point.y, r.point.z, r.normal.x, r.normal.y, r.normal.z}) put(text::shortest(c));
+    for (const FaceId face : r.on) put(std::to_string(index_of(face)));
+    if (r.on.empty()) put("free");
+  }
+  for (const Selection& source : request.sources) put(request.scene->name_of(source));
+  return text;
+}
 
 Study run(Request request, const Hooks& hooks, jobs::Journal* journal) {
   const kernel::StandardArithmetic arithmetic;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "exactff/study.h"
@@ -10,6 +11,9 @@
 #include "study/settings.h"
 
 namespace exactff::study {
+
+// Everything that the exact values of a request depend on.
+[[nodiscard]] std::string text_of_exact_values(const Request& request);
 
 // Seconds of one evaluation with this work.
 [[nodiscard]] double planned_seconds(const methods::Counters& counters, std::size_t faces);

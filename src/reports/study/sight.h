@@ -1,5 +1,5 @@
-// How receivers see the sources, taken from the record of the exact method: each by itself, the edges of shadows
-// between them, and a profile along a line through a penumbra.
+// How receivers see the sources, taken from the record of the exact method: each by itself, and a profile along a line
+// through a penumbra.
 #pragma once
 
 #include <span>
@@ -26,17 +26,6 @@ namespace exactff::study {
 // How a receiver sees each source: not at all, hidden, partly hidden or fully visible.
 [[nodiscard]] std::vector<Sight> sights(const Scene& scene, const Receiver& receiver,
                                         std::span<const ExactSource> sources);
-
-// See Study::edge_distance.
-struct ShadowEdges {
-  std::vector<double> distance;
-  double resolution = 0.0;
-};
-// Where the visibility of the sources changes in kind, from a raster finer than the grid of receivers; or why there are
-// none. The distance of a receiver is that to the nearest such place.
-[[nodiscard]] std::variant<ShadowEdges, LeftOut> find_shadow_edges(const Request& request,
-                                                                   std::span<const ExactSource> sources,
-                                                                   const Hooks& hooks);
 
 // The radiosity along a line of receivers: the exact values and those of other methods. Requires exact values and
 // ladders. If the receivers are not a grid on a quadrilateral, or none sees the source partly, says so instead. The

@@ -82,14 +82,8 @@ SettingSpec pattern_setting() {
                       "where the rays to a leaf or sub-patch end; centre sends only one ray");
 }
 
-SamplePattern pattern_named(std::string_view name) {
-  if (name == "centre") return SamplePattern::kCentre;
-  if (name == "regular") return SamplePattern::kRegular;
-  return name == "jittered" ? SamplePattern::kJittered : SamplePattern::kLowDiscrepancy;
-}
-
 bool pattern_uses(const Settings& settings, std::string_view setting) {
-  const SamplePattern pattern = pattern_named(settings.word("pattern"));
+  const SamplePattern pattern = *pattern_named(settings.word("pattern"));
   if (setting == "rays") return pattern != SamplePattern::kCentre;
   if (setting != "seed") return true;
   return pattern == SamplePattern::kJittered || pattern == SamplePattern::kLowDiscrepancy;
@@ -108,9 +102,9 @@ AdaptiveOptions options_of(const Settings& settings) {
   AdaptiveOptions options;
   take_tolerances(settings, options);
   options.rays = static_cast<int>(settings.whole("rays"));
-  options.pattern = pattern_named(settings.word("pattern"));
+  options.pattern = *pattern_named(settings.word("pattern"));
   options.seed = static_cast<std::uint64_t>(settings.whole("seed"));
-  options.variant = settings.word("variant") == "mended" ? Variant::kMended : Variant::kLiteral;
+  options.variant = *variant_named(settings.word("variant"));
   return options;
 }
 

@@ -21,10 +21,12 @@ class RecursionEvaluator : public Evaluator {
 
   // Splitting stops at this number of leaves; 0: no bound.
   void stop_at(std::uint64_t leaves) { options_.most_leaves = leaves; }
-  // From now on the result behind every value is kept, with its leaves if `leaves`, until it is taken.
-  void keep_results(bool leaves) {
+  // From now on the result behind every value is kept until it is taken; if `leaves`, with its leaves, or at most so
+  // many of the largest.
+  void keep_results(bool leaves, std::size_t most = 0) {
     keeps_results_ = true;
     options_.record_leaves = leaves;
+    options_.most_recorded_leaves = most;
   }
   [[nodiscard]] std::vector<AdaptiveResult> take_results() { return std::exchange(results_, {}); }
   [[nodiscard]] double build_seconds() const { return solver_.build_seconds(); }

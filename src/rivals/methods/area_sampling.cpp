@@ -29,12 +29,8 @@ namespace {
 constexpr std::int64_t kMostSamples = std::int64_t{1} << 24;
 
 PointSet point_set_named(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, PointSet>, 5> kNames = {{{"random", PointSet::kRandom},
-                                                                            {"stratified", PointSet::kStratified},
-                                                                            {"sobol", PointSet::kSobol},
-                                                                            {"halton", PointSet::kHalton},
-                                                                            {"r2", PointSet::kR2}}};
-  return std::find_if(kNames.begin(), kNames.end(), [&](const auto& entry) { return entry.first == name; })->second;
+  if (name == "random") return PointSet::kRandom;
+  return name == "stratified" ? PointSet::kStratified : PointSet::kSobol;
 }
 
 class AreaSampling : public Evaluator {
@@ -172,8 +168,8 @@ Method area_sampling_method() {
           "P. Shirley, C. Wang and K. Zimmerman, Monte Carlo Techniques for Direct Lighting (1996); by solid angle: "
           "J. Arvo (1995) and C. Ureña, M. Fajardo and A. King (2013)",
       .settings = {whole_setting("samples", 64, 1, kMostSamples, "sample points, with one ray to each"),
-                   word_setting("pattern", {"random", "stratified", "sobol", "halton", "r2"},
-                                "random: independent points; stratified: one in each cell; the others: the start of a "
+                   word_setting("pattern", {"random", "stratified", "sobol"},
+                                "random: independent points; stratified: one in each cell; sobol: the start of a "
                                 "low-discrepancy sequence, shifted at random"),
                    word_setting("measure", {"area", "solid-angle"},
                                 "the points are uniform in the source's area, or in the solid angle that x sees"),
@@ -338,9 +334,9 @@ void add_solid_angle_parts(std::span<const Vec3> polygon, double height, std::ve
 
 // --- Unit points ---
 
-// Sequences: Sobol's first two dimensions (van der Corput's, and the one of the polynomial x + 1: the direction numbers
-// follow from v <- v xor v/2, T. Kollig and A. Keller 2002), of which every 2^k points from the start are a (0, k,
-// 2)-net; Halton's (1960); R2: multiples of 1/g and 1/g^2 modulo 1, where g^3 = g + 1.
+// Sobol's sequence, its first two dimensions (van der Corput's, and the one of the polynomial x + 1: the direction
+// numbers follow from v <- v xor v/2, T. Kollig and A. Keller 2002), of which every 2^k points from the start are a (0,
+// k, 2)-net.
 
 namespace {
 
@@ -358,36 +354,14 @@ UnitPoint sobol_point(std::uint32_t index) {
   return {u * kUnit32, v * kUnit32};
 }
 
-double radical_inverse(std::uint32_t index, std::uint32_t base) {
-  double value = 0.0;
-  double digit = 1.0 / base;
-  for (; index != 0; index /= base) {
-    value += digit * (index % base);
-    digit /= base;
-  }
-  return value;
-}
-
-UnitPoint r2_point(std::uint32_t index) {
-  constexpr double kPlastic = 1.32471795724474602596;
-  const double u = (index + 0.5) / kPlastic, v = (index + 0.5) / (kPlastic * kPlastic);
-  return {u - std::floor(u), v - std::floor(v)};
-}
-
-UnitPoint point_of(PointSet set, std::uint32_t index) {
-  if (set == PointSet::kSobol) return sobol_point(index);
-  if (set == PointSet::kHalton) return {radical_inverse(index, 2), radical_inverse(index, 3)};
-  return r2_point(index);
-}
-
 }  // namespace
 
 UnitPoints::UnitPoints(PointSet set, int count) : set_(set), count_(count) {
   if (set == PointSet::kStratified) {
     cells_.prepare(SamplePattern::kJittered, count);
     ends_.resize(cells_.ray_count());
-  } else if (set != PointSet::kRandom) {
-    for (int i = 0; i < count; ++i) sequence_.push_back(point_of(set, static_cast<std::uint32_t>(i)));
+  } else if (set == PointSet::kSobol) {
+    for (int i = 0; i < count; ++i) sequence_.push_back(sobol_point(static_cast<std::uint32_t>(i)));
   }
 }
 

@@ -47,8 +47,6 @@ enum class PointSet {
   kRandom,      // independent
   kStratified,  // one in each of n cells of equal area, in about sqrt(n) rows
   kSobol,       // the first n points of a sequence, shifted modulo 1 by a random vector (Cranley and Patterson 1976)
-  kHalton,      // bases 2 and 3
-  kR2,          // Roberts' additive recurrence by the plastic number
 };
 
 class UnitPoints {

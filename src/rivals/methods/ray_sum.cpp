@@ -255,7 +255,7 @@ class Nettle : public Evaluator {
         seed_(static_cast<std::uint64_t>(settings.whole("seed"))),
         area_factor_(area_factor_of(settings)),
         given_receiver_area_(settings.number("receiver_area")) {
-    plan_.prepare(pattern_named(settings.word("pattern")), static_cast<int>(settings.whole("rays")));
+    plan_.prepare(*pattern_named(settings.word("pattern")), static_cast<int>(settings.whole("rays")));
     ends_.resize(plan_.ray_count());
   }
 

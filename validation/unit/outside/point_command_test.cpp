@@ -222,16 +222,17 @@ TEST_F(PointWords, WhatPlainDoesNotPrintIsSaid) {
   EXPECT_EQ(said.error,
             "exactff: warning: --fraction and --explain have no effect here (--plain prints the value alone; remove "
             "--plain, or use --json)\n");
-  EXPECT_HOLDS(up({"--source", "light", "--plain", "--adaptive"}).error, "--adaptive has no effect here");
+  EXPECT_HOLDS(up({"--source", "light", "--plain", "--method", "adaptive"}).error, "--method has no effect here");
   const std::string file = (directory_.path() / "view.svg").string();
-  EXPECT_EQ(up({"--source", "light", "--plain", "--adaptive", "--svg", file}).error, "") << "the drawing shows leaves";
+  EXPECT_EQ(up({"--source", "light", "--plain", "--method", "adaptive", "--svg", file}).error, "")
+      << "the drawing shows leaves";
 }
 
 TEST_F(PointWords, ExplainTellsTheStagesAndTheOutcome) {
   for (const char* engine : {"edges", "boolean"}) {
-    const Said said = up({"--source", "light", "--fraction", "--explain", "--adaptive", "--engine", engine});
+    const Said said = up({"--source", "light", "--fraction", "--explain", "--method", "adaptive", "--engine", engine});
     for (const char* part : {"  visible      1  (all of it)\n", "plane of light: unoccluded\n",
-                             "occluders that hide a part of it: 0\n", "\n  ray-sampled adaptive: 0.55"}) {
+                             "occluders that hide a part of it: 0\n", "\n  adaptive: 0.55"}) {
       EXPECT_HOLDS(said.output, part);
     }
     EXPECT_EQ(holds(said.output, "that 1 candidate leaves visible: all of it\n"), engine == std::string("edges"));

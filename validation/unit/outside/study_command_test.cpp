@@ -21,7 +21,7 @@ class StudyCommand : public testing::Test {
  protected:
   StudyCommand() {
     std::ofstream(directory_.path() / "room.obj") << kThreeSquares;
-    put("title Two rooms\n" + line("Room A", "4x4") + line("Room B", "3x3 --unless-abridged"));
+    put("title Two rooms\n" + line("Room A", "4x4") + line("Room B", "3x3"));
   }
 
   void put(const std::string& study) const { std::ofstream(directory_.path() / "tiny.study") << study; }
@@ -98,10 +98,7 @@ TEST_F(StudyCommand, ResumeLeavesTheResultOfAnotherRequestAlone) {
   EXPECT_EQ(run(out_), 0) << error_;
   const std::string before = text_of(out_ / "report.html");
   const std::string one = line("Room A", "3x3");
-  const Words others = {line("Room A", "3x4"),
-                        line("Room B", "3x3"),
-                        one + "experiment meshing\n",
-                        "title Other\n" + one,
+  const Words others = {line("Room A", "3x4"), line("Room B", "3x3"), "title Other\n" + one,
                         one.substr(0, one.size() - 1) + " --method wallace\n",
                         one.substr(0, one.size() - 1) + " --method-budget 3\n"};
   for (const std::string& other : others) {
@@ -110,7 +107,6 @@ TEST_F(StudyCommand, ResumeLeavesTheResultOfAnotherRequestAlone) {
     EXPECT_TRUE(said("out: holds the finished report of another request, or of another version of exactff")) << error_;
   }
   put(one);
-  EXPECT_EQ(run(out_, {"--resume", "--abridged"}), 2) << error_;
   std::ofstream(directory_.path() / "room.obj", std::ios::app) << "v 3 3 3\nv 4 3 3\nv 3 4 3\ng more\nf 13 14 15\n";
   EXPECT_EQ(run(out_, {"--resume"}), 2) << "another scene under the same name";
   EXPECT_EQ(text_of(out_ / "report.html"), before);
@@ -163,18 +159,7 @@ TEST_F(NamedMethods, OptionsWithoutEffectAreRefused) {
   EXPECT_EQ(code_, 2);
   EXPECT_TRUE(said("--method-seeds has no effect here (none of the named methods uses random numbers)")) << error_;
   EXPECT_EQ(run("-"), 2);
-  (void)output({"--unless-abridged"});
-  EXPECT_EQ(code_, 2);
   EXPECT_FALSE(fs::exists(out_));
-}
-
-TEST_F(StudyCommand, LeavesScenesOutOfAnAbridgedReportAndSaysSo) {
-  EXPECT_EQ(run(out_, {"--abridged"}), 0) << error_;
-  EXPECT_TRUE(fs::exists(out_ / "room-a_values.csv"));
-  EXPECT_FALSE(fs::exists(out_ / "room-b_values.csv"));
-  const std::string report = text_of(out_ / "report.html");
-  EXPECT_HOLDS(report, "Room B");
-  EXPECT_HOLDS(report, "this report is abridged");
 }
 
 TEST_F(StudyCommand, InterruptedAndResumedHasTheSameValues) {
@@ -214,9 +199,6 @@ TEST_F(StudyCommand, NamesTheLineThatIsWrong) {
       {"scene room.obj --on floor --grid 2x2 --source light --eps-b nan", "--eps-b"},
       {"scene room.obj --source light", "--on"},
       {"scene --on floor --grid 2x2", "SCENE"},
-      {"experiment karkanis-tims", "karkanis-times"},
-      {"experiment --unless-abridged", "nothing but --unless-abridged"},
-      {"experiment hemicub-scatter --unless-abridged", "hemicube-scatter"},
       {"scene @teapott --on floor --grid 2x2", "teapot"},
   };
   for (const auto& [wrong, named] : table) {
@@ -227,17 +209,6 @@ TEST_F(StudyCommand, NamesTheLineThatIsWrong) {
   }
   EXPECT_FALSE(fs::exists(out_));
   EXPECT_FALSE(fs::exists(journal_));
-}
-
-TEST_F(StudyCommand, ExperimentsNeedNoScene) {
-  const auto compare = [&](const Words& more) { return run(joined({"compare", "-o", out_}, more)); };
-  EXPECT_EQ(compare({}), 2);
-  EXPECT_TRUE(said("SCENE is required")) << error_;
-  EXPECT_EQ(compare({"--experiment", "hemicube-scatter", "--on", "floor"}), 2);
-  EXPECT_TRUE(said("without a scene: --on floor")) << error_;
-  EXPECT_EQ(compare({"--experiment", "hemicube-scatter", "--abridged"}), 0) << error_;
-  EXPECT_TRUE(fs::exists(out_ / "hemicube-scatter.csv"));
-  EXPECT_HOLDS(text_of(out_ / "report.html"), "exactff compare --experiment hemicube-scatter");
 }
 
 }  // namespace

@@ -27,22 +27,18 @@ class StudyFileReader : public ::testing::Test {
   const TemporaryDirectory directory_;
 };
 
-TEST_F(StudyFileReader, TakesTitleScenesAndExperiments) {
+TEST_F(StudyFileReader, TakesTitleAndScenes) {
   const flags::StudyFile study = read(
       "# what this is\n"
       "title  Form factors of \"rooms\"  \n"
       "\n"
       "scene room.obj --on floor --title \"A room\"   # the small one\n"
-      "\tscene\t@teapot\t--grid 2x2\r\n"
-      "experiment meshing karkanis-times");
+      "\tscene\t@teapot\t--grid 2x2\r\n");
   EXPECT_EQ(study.title, "Form factors of \"rooms\"");
   ASSERT_EQ(study.scenes.size(), 2U);
   EXPECT_EQ(study.scenes[0].number, 4U);
   EXPECT_EQ(study.scenes[0].words, (Words{"room.obj", "--on", "floor", "--title", "A room"}));
   EXPECT_EQ(study.scenes[1].words, (Words{"@teapot", "--grid", "2x2"}));
-  ASSERT_EQ(study.experiments.size(), 1U);
-  EXPECT_EQ(study.experiments[0].number, 6U);
-  EXPECT_EQ(study.experiments[0].words, (Words{"meshing", "karkanis-times"}));
 }
 
 TEST_F(StudyFileReader, TellsEverythingThatIsWrongWithItsLine) {
@@ -52,14 +48,12 @@ TEST_F(StudyFileReader, TellsEverythingThatIsWrongWithItsLine) {
       "scene 'a b.obj --on floor\n"
       "scene\n"
       "scene a.obj\n"
-      "experiment\n"
       "field cycles.csv\n");
   EXPECT_HOLDS(said, "a.study:1: a line begins with 'Scene'");
   EXPECT_HOLDS(said, "a.study:2: nothing follows 'title'");
   EXPECT_HOLDS(said, "a.study:3: a quote is not closed (the end of the word is unknown); close it with '");
   EXPECT_HOLDS(said, "a.study:4: nothing follows 'scene'");
-  EXPECT_HOLDS(said, "a.study:6: nothing follows 'experiment'");
-  EXPECT_HOLDS(said, "a.study:7: a line begins with 'field'");
+  EXPECT_HOLDS(said, "a.study:6: a line begins with 'field'");
   EXPECT_EQ(said.find("a.study:5"), std::string::npos) << said;
 }
 

@@ -74,26 +74,6 @@ TEST_F(StudyJournal, DamagedInAnyByteHasNothingThatIsWrong) {
   }
 }
 
-page::Chapter a_chapter() {
-  page::Chapter chapter{.name = "name", .title = "A title"};
-  chapter.paragraphs = {"One.", "", "Three, with ε."};
-  chapter.tables = {{"Numbers", {"of", "a"}, {{"x", "1"}, {"y", ""}}}};
-  chapter.figures = {{"f1", "Figure", "caption", "plot 1\n", false}, {"f2", "Map", "<b>", "plot 2\n", true}};
-  chapter.values = {{"name.csv", "what it holds", "# exactff\nx\n1\n"}};
-  chapter.times = {{"times.csv", "seconds", "s\n"}, {"t2.csv", "", ""}};
-  chapter.left_out = {{"the moon", "too far"}};
-  return chapter;
-}
-
-TEST(ChapterBytes, CutAnywhereOrTooLongAreNone) {
-  const std::string whole = page::to_bytes(a_chapter());
-  for (std::size_t cut = 0; cut < whole.size(); ++cut) {
-    EXPECT_FALSE(page::chapter_of(std::string_view(whole).substr(0, cut)).has_value()) << cut;
-  }
-  EXPECT_FALSE(page::chapter_of(whole + '\0').has_value());
-  EXPECT_EQ(page::to_bytes(page::chapter_of(whole).value()), whole);
-}
-
 TEST(ResumedStudy, HasTheSameValuesWhereverTheJournalWasCut) {
   const TemporaryDirectory directory;
   const fs::path file = directory.path() / "out.part", cut_file = directory.path() / "cut.part";

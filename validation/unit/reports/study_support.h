@@ -50,7 +50,7 @@ inline study::Request request_with_methods(const Scene& scene, int threads) {
   return request;
 }
 
-// Without a grid there is neither a raster of shadow edges nor a profile, which take most of a small study's time.
+// Without a grid there is no profile, which takes much of a small study's time.
 inline void scatter(study::Request& request) {
   for (Receiver& receiver : request.receivers) receiver.id = 'r' + receiver.id;
   request.receivers_name = "scattered";

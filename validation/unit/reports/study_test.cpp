@@ -275,9 +275,7 @@ TEST(MethodStudy, CountsValuesThatAreNoNumbersOrLeaveTheRange) {
     EXPECT_TRUE(std::isfinite(report::relative_error(study, *cell)));
   report::StudyReport report;
   report.scenes.push_back({"", "room", study});
-  report::Pages pages;
-  pages.scenes.emplace_back();
-  const std::string page = report::report_page(report, pages);
+  const std::string page = report::report_page(report, std::vector<report::Page>(1));
   for (const std::string& sentence : sentences) EXPECT_HOLDS(page, "<p>" + text::html(sentence));
 }
 

@@ -85,7 +85,7 @@ constexpr const char* kChoices[] = {"exact",
                                     "wallace:splits=6,pattern=jittered",
                                     "area-sampling",
                                     "area-sampling:pattern=stratified",
-                                    "area-sampling:pattern=halton"};
+                                    "area-sampling:pattern=sobol"};
 
 std::vector<double> values_of(const methods::PreparedScene& on_scene, const methods::PreparedSource& source,
                               const Choice& choice, const std::vector<Receiver>& receivers) {

@@ -37,7 +37,8 @@ from ._arguments import InputError, ModellingWarning, Problem
 from ._check import (check, CheckReport, Distribution, Improvement, RowError, scoreboard, Scoreboard, truth,
                      TruthSummary, Verdict)
 from ._geometry import Contact, Finding, Gap, Lightmap, Material, Patch, Receivers, Report, Welding
-from ._pair import DerivativeStatus, Drawing, Enclosure, FormFactor, FormFactors, Gradient, Status, VertexGradient
+from ._exactff import Enclosure
+from ._pair import DerivativeStatus, Drawing, FormFactor, FormFactors, Gradient, Status, VertexGradient
 from ._scene import Scene
 from ._views import (Balance, ExchangeFactors, PairOfPatches, radiosity, Radiosity, Reciprocity, SeenPatch, Share, Temperatures, View,
                      view, view_factor, view_factor_matrix, ViewFactor, ViewFactorMatrix)

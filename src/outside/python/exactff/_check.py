@@ -30,8 +30,7 @@ class TruthSummary(NamedTuple):
 
 
 def truth(scene: Scene, receivers: Receivers, path: Union[str, os.PathLike[str]], sources: Names = None, *,
-          unoccluded: bool = False, fraction: bool = False, unit_normals: bool = False, uv: bool = False,
-          gradient: bool = False, measures: Sequence[Literal["solid-angle", "overcast", "sphere"]] = (),
+          columns: Sequence[str] = (), measures: Sequence[Literal["solid-angle", "overcast", "sphere"]] = (),
           up: ArrayLike = (0.0, 0.0, 1.0),
           existing: Literal["refuse", "resume", "replace"] = "refuse", threads: int = 0,
           progress: Progress = None) -> TruthSummary:
@@ -41,7 +40,7 @@ def truth(scene: Scene, receivers: Receivers, path: Union[str, os.PathLike[str]]
     ----------
     sources : as in :meth:`Scene.form_factors`; the rows of "sky" are the last of each receiver
     receivers : from :meth:`Scene.receivers`, :meth:`Scene.read_receivers` or :meth:`Scene.receivers_at`
-    unoccluded, fraction, unit_normals, uv, gradient : additional columns
+    columns : additional columns, by their flags without dashes: ``["fraction", "gradient", "unit-normals"]``
     measures, up : further columns, as in :meth:`Scene.form_factors`; "sphere" is the form factor from a small sphere
     existing : what to do if there is a file or a journal of an interrupted run: "refuse", "resume" or "replace"
 
@@ -49,15 +48,13 @@ def truth(scene: Scene, receivers: Receivers, path: Union[str, os.PathLike[str]]
     """
     if existing not in ("refuse", "resume", "replace"):
         refuse(f"existing is {existing!r}", "", "choose 'refuse', 'resume' or 'replace'")
-    wanted = {"unoccluded": unoccluded, "visible_fraction": fraction, "unit_normals": unit_normals, "uv": uv,
-              "gradient": gradient}
     more = [_arguments.measure_tuple("form-factor" if one == "sphere" else one, up, one == "sphere") for one in measures]
     count = _arguments.thread_count(threads)
     require_free(path, "replace", scene._read)
     with shown(progress, "row") as tell:
         rows, by_status, resumed, seconds = _exactff.write_truth(
             scene._scene, scene.name, receivers._list, receivers.name, scene._sources(sources, sky=True), os.fspath(path),
-            existing, [column for column, is_wanted in wanted.items() if is_wanted], more, count, tell)
+            existing, list(columns), more, count, tell)
     certified, zero, underflow, not_certified = by_status
     if not_certified:
         warn(f"{not_certified} of {rows} rows are not certified")
@@ -175,10 +172,10 @@ def check(truth: Union[Path, FormFactors, ArrayLike], values: Union[Path, ArrayL
     for file, others in ((write_baseline, read), (junit, [*read, *([] if baseline is None else [baseline])])):
         if file is not None:
             require_free(file, "replace", others)
-    limits = _limits(max_abs, max_rel, rms, eps_b, quantiles, per_source, relative_floor, worst)
+    limits = _exactff.Limits(max_abs, max_rel, rms, eps_b, list((quantiles or {}).items()), per_source, relative_floor,
+                             worst)
     matching = _matching(truth_column, value_column, match, tolerance, partial)
-    files = _exactff.CheckFiles()
-    files.baseline, files.write_baseline, files.slack, files.junit = baseline, write_baseline, slack, junit
+    files = _exactff.CheckFiles(baseline, write_baseline, junit, slack)
     names = list(receivers.ids if isinstance(receivers, Receivers) else receivers)
     if not isinstance(truth, (str, os.PathLike)):
         return _arrays_report(truth, values, names, limits, files)
@@ -227,31 +224,19 @@ def scoreboard(truth: Path, candidates: Sequence[Path], *, folder: Optional[Path
             refuse(f"seconds names {name!r}", "there is no such program", f"the programs are {', '.join(names)}")
     if not paths:
         refuse("there are no candidates", "a scoreboard has a row for each", "give their files")
-    limits = _limits(max_abs, max_rel, rms, eps_b, quantiles, per_source, relative_floor, worst)
+    limits = _exactff.Limits(max_abs, max_rel, rms, eps_b, list((quantiles or {}).items()), per_source, relative_floor,
+                             worst)
     matching = _matching(truth_column, value_column, match, tolerance, partial)
     markdown, programs = _exactff.scoreboard(os.fspath(truth), paths, matching, limits, [times.get(n) for n in names],
                                              None if folder is None else os.fspath(folder))
     return Scoreboard({name: _report(report) for name, _, report in programs}, times, markdown)
 
 
-def _limits(max_abs: Optional[float], max_rel: Optional[float], rms: Optional[float], eps_b: Optional[float],
-            quantiles: Optional[Mapping[float, float]], per_source: bool, relative_floor: float,
-            worst: int) -> _exactff.Limits:
-    limits = _exactff.Limits()
-    limits.max_abs, limits.max_rel, limits.rms, limits.eps_b = max_abs, max_rel, rms, eps_b
-    limits.quantiles = list((quantiles or {}).items())
-    limits.per_source, limits.relative_floor, limits.worst = per_source, relative_floor, worst
-    return limits
-
-
 def _matching(truth_column: str, value_column: str, match: str, tolerance: float,
               partial: bool) -> _exactff.Matching:
     if match not in ("receiver", "position"):
         refuse(f"match is {match!r}", "", "choose 'receiver' or 'position'")
-    matching = _exactff.Matching()
-    matching.truth_column, matching.value_column, matching.by_position = truth_column, value_column, match == "position"
-    matching.tolerance, matching.partial = tolerance, partial
-    return matching
+    return _exactff.Matching(truth_column, value_column, match == "position", partial, tolerance)
 
 
 def _any_numbers(values: Any) -> Any:

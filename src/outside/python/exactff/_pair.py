@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _exactff
-from ._arguments import Floats, refuse
+from ._arguments import Floats
+from ._exactff import Enclosure
 
 _MOST_SHARES = 20
-_MOST_DIGITS = 10000
 
 
 class Status(enum.IntEnum):
@@ -36,60 +36,6 @@ class DerivativeStatus(enum.IntEnum):
     UNDERFLOW = 2  #: it is not 0 and rounds to 0
     ENCLOSED = 3  #: its ball does not determine the double; 0 if the ball still contains 0 at 256 bits
     KINK = 4  #: the derivative does not exist; its value is NaN
-
-
-class Enclosure:
-    """A ball that is proved to contain a real number: every number within ``radius`` of ``midpoint`` may be it.
-
-    ``midpoint`` and ``radius`` are decimal strings that mean exactly what they say: ``fractions.Fraction(e.midpoint)``
-    and ``mpmath.mpf(e.midpoint)`` take them. Balls can be added and subtracted; rounded values cannot.
-    """
-
-    def __init__(self, ball: _exactff.Enclosure) -> None:
-        self._ball = ball
-
-    @property
-    def midpoint(self) -> str:
-        """The midpoint, as a decimal string."""
-        return self._ball.midpoint
-
-    @property
-    def radius(self) -> str:
-        """The radius, as a decimal string."""
-        return self._ball.radius
-
-    @property
-    def lower(self) -> float:
-        """The largest double that is not above the ball's lower end."""
-        return self._ball.lower
-
-    @property
-    def upper(self) -> float:
-        """The smallest double that is not below the ball's upper end."""
-        return self._ball.upper
-
-    @property
-    def nearest(self) -> Optional[float]:
-        """The double to which every number in the ball rounds; None if they do not all round to the same one."""
-        return self._ball.nearest
-
-    def decimals(self, digits: int) -> Optional[str]:
-        """The number to so many significant digits, correctly rounded; None if the ball does not determine them."""
-        if not 1 <= digits <= _MOST_DIGITS:
-            refuse(f"digits is {digits}", f"it is a whole number from 1 to {_MOST_DIGITS}", "ask for fewer digits")
-        return self._ball.decimals(digits)
-
-    def __contains__(self, value: float) -> bool:
-        return self._ball.contains(value)
-
-    def __add__(self, other: Enclosure) -> Enclosure:
-        return Enclosure(self._ball.plus(other._ball)) if isinstance(other, Enclosure) else NotImplemented
-
-    def __sub__(self, other: Enclosure) -> Enclosure:
-        return Enclosure(self._ball.minus(other._ball)) if isinstance(other, Enclosure) else NotImplemented
-
-    def __repr__(self) -> str:
-        return f"<exactff.Enclosure {self.midpoint} +/- {self.radius}>"
 
 
 class Drawing:
@@ -142,6 +88,7 @@ class Gradient:
     vertices: Optional[VertexGradient] = None  #: None unless ``vertices=True``, and at a kink
 
 
+@dataclass(frozen=True, repr=False, eq=False)
 class FormFactor:
     """The exact form factor from one receiver to one source. ``float(f)`` is its value.
 
@@ -150,64 +97,24 @@ class FormFactor:
     true form factor.
     """
 
-    def __init__(self, pair: _exactff.Pair, ask: _Again) -> None:
-        self._pair = pair
-        self._ask = ask
+    value: float  #: exact: correctly rounded; a pure number in [0, 1]
+    lower: float  #: encloses: a double that is not above the form factor
+    upper: float  #: encloses: a double that is not below it
+    status: Status  #: how far the value is proved
+    enclosure: Enclosure  #: encloses: a ball that contains the form factor
+    source: str  #: its name
+    precision_bits: int  #: of the last evaluation of the contour integral; 0 if none was needed
+    visible_fraction: Optional[float]  #: exact: visible over whole area of the source; None unless ``fraction=True``
+    visible_part: Optional[str]  #: "none", "some" or "all", decided exactly; None unless ``fraction=True``
+    gradient: Optional[Gradient]  #: the derivatives by the receiver's point and normal; None unless ``gradient=True``
+    _pair: _exactff.Pair
+    _ask: _Again
 
-    @property
-    def value(self) -> float:
-        """Exact: the form factor, correctly rounded; a pure number in [0, 1]."""
-        return self._pair.value
-
-    @property
-    def lower(self) -> float:
-        """Encloses: a double that is not above the form factor."""
-        return self._pair.lower
-
-    @property
-    def upper(self) -> float:
-        """Encloses: a double that is not below the form factor."""
-        return self._pair.upper
-
-    @property
-    def status(self) -> Status:
-        """How far the value is proved."""
-        return Status(self._pair.status)
-
-    @property
-    def enclosure(self) -> Enclosure:
-        """Encloses: a ball that contains the form factor."""
-        return Enclosure(self._pair.enclosure)
-
-    @property
-    def source(self) -> str:
-        """The name of the source."""
-        return self._pair.source
-
-    @property
-    def precision_bits(self) -> int:
-        """The precision of the last evaluation of the contour integral; 0 if none was needed."""
-        return self._pair.precision_bits
-
-    @property
-    def visible_fraction(self) -> Optional[float]:
-        """Exact: visible over whole area of the source, correctly rounded; None unless ``fraction=True``."""
-        return self._pair.visible_fraction
-
-    @property
-    def visible_part(self) -> Optional[str]:
-        """``none``, ``some`` or ``all`` of the source, decided exactly; None unless ``fraction=True``."""
-        return self._pair.visible_part
-
-    @property
-    def gradient(self) -> Optional[Gradient]:
-        """The derivatives by the receiver's point and normal; None unless ``gradient=True``."""
-        found = self._pair.gradient()
-        if found is None:
-            return None
-        kink, position, normal, vertices, frames = found
-        return Gradient(*_derivatives(position), *_derivatives(normal), None if kink is None else kink[0],
-                        () if kink is None else tuple(kink[1]), _vertices(vertices, frames) if frames else None)
+    @classmethod
+    def _made(cls, pair: _exactff.Pair, ask: _Again) -> FormFactor:
+        value, lower, upper, status, ball, source, bits, fraction, part = pair.facts()
+        return cls(value, lower, upper, Status(status), ball, source, bits, fraction, part, _gradient(pair.gradient()),
+                   pair, ask)
 
     def explain(self) -> str:
         """What was computed and why, in words: the stages for each plane of the source, and the occluders that hide a
@@ -226,23 +133,26 @@ class FormFactor:
         return f"<exactff.FormFactor to {self.source!r}: {self.value!r} ({self.status})>"
 
 
-def _derivatives(
-    found: list[tuple[float, int, _exactff.Enclosure]]
-) -> tuple[Floats, tuple[DerivativeStatus, ...], tuple[Enclosure, ...]]:
-    return (np.array([value for value, _, _ in found]), tuple(DerivativeStatus(status) for _, status, _ in found),
-            tuple(Enclosure(ball) for _, _, ball in found))
+def _gradient(found: Any) -> Optional[Gradient]:
+    if found is None:
+        return None
+    kink, position, normal, vertices, frames = found
+    return Gradient(*_derivatives(position), *_derivatives(normal), None if kink is None else kink[0],
+                    () if kink is None else tuple(kink[1]), _vertices(vertices, frames) if frames else None)
 
 
-def _vertices(
-    found: list[tuple[int, tuple[float, float, float], list[tuple[float, int, _exactff.Enclosure]]]],
-    frames: list[list[int]]
-) -> VertexGradient:
+def _derivatives(found: Any) -> tuple[Floats, tuple[DerivativeStatus, ...], tuple[Enclosure, ...]]:
+    values, status, balls = zip(*found)
+    return np.array(values), tuple(map(DerivativeStatus, status)), balls
+
+
+def _vertices(found: Any, frames: list[list[int]]) -> VertexGradient:
     return VertexGradient(
         np.array([vertex for vertex, _, _ in found], dtype=np.int64),
         np.array([place for _, place, _ in found], dtype=np.float64).reshape(-1, 3),
         np.array([[value for value, _, _ in three] for _, _, three in found], dtype=np.float64).reshape(-1, 3),
         np.array([[status for _, status, _ in three] for _, _, three in found], dtype=np.int8).reshape(-1, 3),
-        tuple(tuple(Enclosure(ball) for _, _, ball in three) for _, _, three in found),
+        tuple(tuple(ball for _, _, ball in three) for _, _, three in found),
         np.array(frames, dtype=np.int64).reshape(-1, 3))
 
 

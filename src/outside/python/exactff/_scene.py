@@ -467,8 +467,8 @@ class Scene:
         scene = self if transparent is None else self.with_transparent(*_arrays_names(transparent))
         ask = _Again(scene._scene, *scene._one_receiver(point, normal, on, "form_factor is for one", "use form_factors"),
                      self._source(source), _arguments.measure_tuple(measure, up, normal is None))
-        return FormFactor(ask(fraction=fraction, digits=digits, precision_cap=_bits(precision_cap),
-                              gradient=gradient, vertices=vertices), ask)
+        return FormFactor._made(ask(fraction=fraction, digits=digits, precision_cap=_bits(precision_cap),
+                                    gradient=gradient, vertices=vertices), ask)
 
     # --- names and own faces ---
 

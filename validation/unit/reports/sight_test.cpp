@@ -1,9 +1,10 @@
-// Where shadows end on a grid of receivers, and profiles across them.
+// Profiles across the edges of shadows.
+#include "study/sight.h"
+
 #include <variant>
 
 #include "exactff/study.h"
 #include "study/settings.h"
-#include "study/sight.h"
 #include "support/test.h"
 #include "unit/reports/study_support.h"
 
@@ -49,20 +50,6 @@ struct Begun {
     }
   }
 };
-
-TEST(ShadowEdges, AreWhereTheHalfPlaneCastsThem) {
-  const Scene scene = half_plane();
-  Begun begun(scene);
-  const auto edges = std::get<ShadowEdges>(find_shadow_edges(begun.study.request, begun.sources, {}));
-  ASSERT_EQ(edges.distance.size(), 16U);
-  EXPECT_GT(edges.resolution, 0.0);
-  EXPECT_LT(edges.resolution, 0.05);
-  for (std::size_t i = 0; i < 16; ++i) {
-    const double x = begun.study.request.receivers[i].point.x;
-    const double distance = std::min(std::abs(x - 1), std::abs(x + 1));
-    EXPECT_NEAR(edges.distance[i], distance, 0.75 * edges.resolution) << x;
-  }
-}
 
 TEST(Profiles, HaveTheirKinksWhereTheHalfPlaneCastsThem) {
   const Scene scene = half_plane();
