@@ -12,7 +12,7 @@
 #include "python/bindings.h"
 #include "report/pictures.h"
 #include "scene/selections.h"
-#include "truth/unit_normal.h"
+#include "truth/columns.h"
 
 namespace exactff::python {
 

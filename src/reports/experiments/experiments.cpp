@@ -78,7 +78,7 @@ KarkanisScene karkanis_scene(int triangles, std::uint64_t seed) {
   Scene scene = models::make_scene("karkanis:n=" + std::to_string(triangles) + ",floor=0,seed=" + std::to_string(seed));
   std::vector<Selection> sources;
   const Selection all = scene.select("occ");
-  for (const FaceId face : scene.faces_of(all)) sources.push_back({all.patch, face});
+  for (const FaceId face : scene.faces_of(all)) sources.push_back({all.patch, face, scene.id()});
   return {std::move(scene), {.point = {0, 0, 0}, .normal = {0, 0, 1}, .on = {}, .id = {}}, std::move(sources)};
 }
 
