@@ -206,6 +206,10 @@ jobs::Summary write(const Request& request, const std::filesystem::path& file,
 void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::path& path,
                const Balanced* balanced = nullptr);
 
+// Writes the factors of the first row and their bounds for ParaView (.vtp, .vtu), at the faces of the columns, NaN
+// elsewhere. Requires a row. Throws InputError if the file cannot be written.
+void write_vtk(const Scene& scene, const Matrix& matrix, const std::filesystem::path& file);
+
 // --- Files of other programs ---
 
 // A square of values between patches, with all that such files hold.

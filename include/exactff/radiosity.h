@@ -266,6 +266,10 @@ struct SolutionFile {
 // In any format. Throws one InputError with file:line for every problem.
 [[nodiscard]] SolutionFile read_solution(const std::filesystem::path& file);
 
+// Writes the radiosities, their bounds and the irradiances for ParaView (.vtp, .vtu), at the faces of the patches,
+// three channels each, NaN elsewhere. Throws InputError if the file cannot be written.
+void write_vtk(const Scene& scene, const Solution& solution, const std::filesystem::path& file);
+
 // What table_of was given, but for what no row has: the balance, claim_of_balance, and why there is no bound. Throws
 // InputError if the file is of another scene, by its hash and names.
 [[nodiscard]] Solution solution_of(const Scene& scene, const SolutionFile& file);

@@ -24,7 +24,6 @@ enum class FaceId : std::uint32_t {};
 enum class MaterialId : std::uint32_t {};
 // Every scene made in a process has its own number, counted from 1. A scene that is moved keeps it.
 enum class SceneId : std::uint64_t {};
-inline constexpr SceneId kAnyScene{0};
 
 // A unit of length. Scenes need none; it is kept for people and for files.
 enum class Unit { kNone, kMillimetre, kCentimetre, kMetre, kInch, kFoot };
@@ -111,7 +110,7 @@ struct Piece {
 struct Selection {
   PatchId patch{};
   std::optional<FaceId> face;
-  SceneId scene = kAnyScene;  // the scene that made it; not compared
+  SceneId scene;  // that it is of; not compared
 
   friend bool operator==(const Selection& a, const Selection& b) { return a.patch == b.patch && a.face == b.face; }
 };

@@ -106,7 +106,7 @@ std::string broken_by(const Scene& scene, FaceId id) {
 
 std::string broken_by_names(const Scene& scene) {
   for (std::size_t i = 0; i < scene.patches().size(); ++i) {
-    const Selection whole{PatchId(static_cast<std::uint32_t>(i)), std::nullopt};
+    const Selection whole{PatchId(static_cast<std::uint32_t>(i)), {}, scene.id()};
     if (scene.select(scene.name_of(whole)) != whole) return "a name that selects another patch";
   }
   return {};

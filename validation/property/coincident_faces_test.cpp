@@ -93,7 +93,7 @@ PlainScene sheets_over_a_floor() {
 
 std::vector<Selection> all_patches(const Scene& scene) {
   std::vector<Selection> all;
-  for (std::uint32_t p = 0; p < scene.patches().size(); ++p) all.push_back({PatchId{p}, {}});
+  for (std::uint32_t p = 0; p < scene.patches().size(); ++p) all.push_back({PatchId{p}, {}, scene.id()});
   return all;
 }
 

@@ -37,7 +37,8 @@ class LostViews {
   explicit LostViews(const Scene& scene) {
     for (std::size_t f = 0; f < scene.faces().size(); ++f) {
       const Face& face = scene.faces()[f];
-      const std::vector<Receiver> points = grid_receivers(scene, Selection{face.patch, static_cast<FaceId>(f)}, {3, 3});
+      const std::vector<Receiver> points =
+          grid_receivers(scene, Selection{face.patch, static_cast<FaceId>(f), scene.id()}, {3, 3});
       for (const Receiver& point : points) {
         if (find_faces(scene, point, 1e-9, Normals::kAny).faces.size() != 1 || is_covered(scene, point)) continue;
         points_.push_back(point);

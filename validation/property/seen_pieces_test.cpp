@@ -42,7 +42,7 @@ Scene with_only(const Scene& scene, const std::vector<std::uint32_t>& pieces) {
   for (const std::uint32_t piece : pieces) seen[index_of(scene.pieces()[piece].face)] = true;
   std::vector<Selection> others;
   for (std::uint32_t f = 0; f < seen.size(); ++f) {
-    if (!seen[f]) others.push_back({.patch = scene.faces()[f].patch, .face = FaceId{f}});
+    if (!seen[f]) others.push_back({scene.faces()[f].patch, FaceId{f}, scene.id()});
   }
   return scene.with_transparent(others);
 }

@@ -21,13 +21,14 @@ using whole_view::SourceFactors;
 
 std::vector<Selection> every_patch(const Scene& scene) {
   std::vector<Selection> all;
-  for (std::uint32_t p = 0; p < scene.patches().size(); ++p) all.push_back({.patch = PatchId{p}, .face = {}});
+  for (std::uint32_t p = 0; p < scene.patches().size(); ++p) all.push_back({PatchId{p}, {}, scene.id()});
   return all;
 }
 
 std::vector<Selection> every_face(const Scene& scene) {
   std::vector<Selection> all;
-  for (std::uint32_t f = 0; f < scene.faces().size(); ++f) all.push_back({scene.faces()[f].patch, FaceId{f}});
+  for (std::uint32_t f = 0; f < scene.faces().size(); ++f)
+    all.push_back({scene.faces()[f].patch, FaceId{f}, scene.id()});
   return all;
 }
 

@@ -39,7 +39,7 @@ class RegressionScene : public testing::TestWithParam<fs::path> {
   // Calls ask(receiver, source) for every receiver and every patch with area.
   void for_each_pair(const auto& ask) const {
     for (std::uint32_t p = 0; p < scene_.patches().size(); ++p) {
-      const Selection source{PatchId{p}, {}};
+      const Selection source{PatchId{p}, {}, scene_.id()};
       if (scene_.faces_of(source).empty()) continue;
       SCOPED_TRACE("patch " + std::to_string(p));
       for (const Receiver& receiver : receivers_) ask(receiver, source);

@@ -6,7 +6,6 @@
 #include <iostream>
 #include <memory>
 
-#include "check/images.h"
 #include "check/report.h"
 #include "cli/commands.h"
 #include "cli/output.h"

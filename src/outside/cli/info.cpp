@@ -116,7 +116,7 @@ void print_list(const std::string& title, const std::vector<std::string>& items)
 }
 
 // NAME:k even if the patch has only one face: these lists are about faces.
-std::string numbered_name(const Scene& scene, FaceId face) { return scene.name_of({scene.face(face).patch, face}); }
+std::string numbered_name(const Scene& scene, FaceId face) { return scene.name_of(selection_of(scene, face)); }
 
 std::vector<std::string> numbered_names(const Scene& scene, FaceShape shape) {
   std::vector<std::string> names;

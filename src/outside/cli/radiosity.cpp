@@ -18,7 +18,6 @@
 #include "flags/scene.h"
 #include "flags/values.h"
 #include "radiosity/narrowing.h"
-#include "radiosity/on_faces.h"
 #include "scene/selections.h"
 #include "text/json_document.h"
 #include "text/number_text.h"

@@ -18,7 +18,7 @@
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
-#include "truth/team.h"
+#include "truth/rows.h"
 
 namespace exactff::cli {
 namespace {

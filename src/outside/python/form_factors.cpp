@@ -13,7 +13,7 @@
 #include "report/report.h"
 #include "scene/selections.h"
 #include "text/refuse.h"
-#include "truth/unit_normal.h"
+#include "truth/columns.h"
 
 namespace exactff::python {
 

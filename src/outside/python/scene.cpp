@@ -158,7 +158,7 @@ Names faces_of_shape(const SharedScene& self, int shape) {
   Names names;
   const auto is_so = [&](const Face& face) { return face.shape == static_cast<FaceShape>(shape); };
   for (const FaceId id : faces_where(self.scene(), is_so))
-    names.push_back(self.scene().name_of({self.scene().face(id).patch, id}));
+    names.push_back(self.scene().name_of(selection_of(self.scene(), id)));
   return names;
 }
 

@@ -10,7 +10,7 @@
 #include "exactff/slips.h"
 #include "exactff/view.h"
 #include "matrix/balanced.h"
-#include "matrix/row_on_faces.h"
+#include "matrix/rows.h"
 #include "python/bindings.h"
 #include "radiosity/narrowing.h"
 #include "scene/selections.h"
@@ -232,7 +232,7 @@ py::tuple view_of(const SharedScene& scene, const std::array<double, 3>& point, 
   });
   py::list rows;
   for (const SeenPatch& patch : seen.patches) {
-    rows.append(py::make_tuple(in.name_of(Selection{patch.patch, patch.face}), to_tuple(patch.form_factor),
+    rows.append(py::make_tuple(in.name_of(Selection{patch.patch, patch.face, in.id()}), to_tuple(patch.form_factor),
                                to_tuple(patch.share), patch.stacked));
   }
   const py::object buried =

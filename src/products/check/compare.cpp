@@ -12,7 +12,6 @@
 #include <span>
 #include <utility>
 
-#include "check/images.h"
 #include "check/report.h"
 #include "check/tables.h"
 #include "exr/exr_file.h"

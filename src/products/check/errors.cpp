@@ -40,14 +40,6 @@ std::string bounds_of(const Expected& expected) {
   return text + ", " + std::string(to_string(*expected.status));
 }
 
-}  // namespace
-
-Expected::Expected(double number) : value(number), lower(number), upper(number) {}
-Expected::Expected(const FormFactor& f) : value(f.value), lower(f.lower), upper(f.upper), status(f.status) {}
-Expected::Expected(const TruthRow& row) : value(row.value), lower(row.lower), upper(row.upper), status(row.status) {}
-
-namespace {
-
 // F*: the true value; if it is not certified, the point of its enclosure nearest to `actual`.
 double reference_of(double actual, const Expected& expected) {
   if (expected.status != Status::kNotCertified || std::isnan(actual)) return expected.value;
@@ -62,6 +54,10 @@ double relative_error(double error, double reference, double floor) {
 }
 
 }  // namespace
+
+Expected::Expected(double number) : value(number), lower(number), upper(number) {}
+Expected::Expected(const FormFactor& f) : value(f.value), lower(f.lower), upper(f.upper), status(f.status) {}
+Expected::Expected(const TruthRow& row) : value(row.value), lower(row.lower), upper(row.upper), status(row.status) {}
 
 Difference difference(double actual, const Expected& expected) {
   const kernel::StandardArithmetic arithmetic;
@@ -229,25 +225,6 @@ void require_limit(const std::optional<double>& limit, std::string_view name) {
                "give 0 or more");
 }
 
-}  // namespace
-
-void check_criteria(const Criteria& criteria) {
-  require_limit(criteria.max_abs, "max-abs");
-  require_limit(criteria.max_rel, "max-rel");
-  require_limit(criteria.rms, "rms");
-  require_limit(criteria.eps_b, "eps-b");
-  require_limit(criteria.relative_mse, "relative-mse");
-  require_limit(criteria.relative_floor, "the relative floor");
-  for (const Quantile& quantile : criteria.quantiles) {
-    require_limit(quantile.limit, name_of(quantile));
-    if (quantile.share > 0.0 && quantile.share <= 1.0) continue;
-    text::refuse("the share of a quantile is " + text::shortest(quantile.share), "a quantile is a share of the rows",
-                 "give a number above 0 and up to 1, for example 0.99");
-  }
-}
-
-namespace {
-
 class Judge {
  public:
   Judge(const Truth& truth, const std::vector<Measured>& values, const Criteria& criteria)
@@ -392,6 +369,21 @@ class Judge {
 };
 
 }  // namespace
+
+void check_criteria(const Criteria& criteria) {
+  require_limit(criteria.max_abs, "max-abs");
+  require_limit(criteria.max_rel, "max-rel");
+  require_limit(criteria.rms, "rms");
+  require_limit(criteria.eps_b, "eps-b");
+  require_limit(criteria.relative_mse, "relative-mse");
+  require_limit(criteria.relative_floor, "the relative floor");
+  for (const Quantile& quantile : criteria.quantiles) {
+    require_limit(quantile.limit, name_of(quantile));
+    if (quantile.share > 0.0 && quantile.share <= 1.0) continue;
+    text::refuse("the share of a quantile is " + text::shortest(quantile.share), "a quantile is a share of the rows",
+                 "give a number above 0 and up to 1, for example 0.99");
+  }
+}
 
 bool Report::passed() const {
   return std::all_of(verdicts.begin(), verdicts.end(), [](const Verdict& verdict) { return verdict.passed; });

@@ -1,5 +1,4 @@
-#include "check/images.h"
-
+// Images as truths and candidates, and their errors as images.
 #include <bit>
 #include <cmath>
 #include <cstdint>

@@ -11,6 +11,7 @@
 #include "kernel/float_environment.h"
 #include "text/escape.h"
 #include "text/json_document.h"
+#include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
@@ -325,8 +326,14 @@ std::string failure_message(const Report& report) {
   }
   if (report.worst.empty()) return text;
   text += "worst rows by " + std::string(to_string(report.worst_by)) + ":\n";
-  for (const RowError& row : report.worst) text += "  " + text::printable(row.name + ": " + describe(row)) + '\n';
+  for (const std::string& line : worst_lines(report)) text += "  " + text::printable(line) + '\n';
   return text;
+}
+
+std::vector<std::string> worst_lines(const Report& report) {
+  std::vector<std::string> lines;
+  for (const RowError& row : report.worst) lines.push_back(row.name + ": " + describe(row));
+  return lines;
 }
 
 std::vector<std::string> sentences(const MatrixFacts& facts) {
@@ -357,20 +364,15 @@ std::vector<std::string> sentences(const MatrixFacts& facts) {
 
 namespace {
 
-std::string worst_rows(const Report& report) {
-  std::string text;
-  for (const RowError& row : report.worst) text += "\n" + row.name + ": " + describe(row);
-  return text;
-}
-
 std::string test_case(const Report& report, const Verdict& verdict) {
   std::string text = "    <testcase classname=\"" + text::html("exactff.check." + report.column) + "\" name=\"" +
                      text::html(name_of(verdict)) + "\" time=\"0\"";
   if (verdict.passed) return text + "/>\n";
+  std::vector<std::string> lines = worst_lines(report);
+  lines.insert(lines.begin(), sentence(verdict) + "\nworst rows by " + std::string(to_string(report.worst_by)) + ':');
   return text + ">\n      <failure message=\"" + text::html(sentence(verdict)) + "\" type=\"" +
-         text::html(verdict.criterion) + "\">" +
-         text::html(sentence(verdict) + "\nworst rows by " + std::string(to_string(report.worst_by)) + ':') +
-         text::html(worst_rows(report)) + "</failure>\n    </testcase>\n";
+         text::html(verdict.criterion) + "\">" + text::html(text::joined(lines, "\n")) +
+         "</failure>\n    </testcase>\n";
 }
 
 std::string property(const std::string& name, const std::string& value) {

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "exactff/check.h"
+#include "exactff/exr.h"
+#include "exactff/render.h"
 
 namespace exactff::check {
 
@@ -38,6 +40,8 @@ void check_criteria(const Criteria& criteria);
 [[nodiscard]] std::string sentence(const Verdict& verdict);
 // "exact 0.25, found 0.26, error 0.01, relative 0.04"
 [[nodiscard]] std::string describe(const RowError& row);
+// The worst rows: "receiver '7': exact 0.25, found 0.26, ...".
+[[nodiscard]] std::vector<std::string> worst_lines(const Report& report);
 // One for each fact.
 [[nodiscard]] std::vector<std::string> sentences(const MatrixFacts& facts);
 // What the user should know about the result, whether it passed or not.
@@ -85,6 +89,33 @@ struct Plot {
   std::string why_not;  // empty if there is a picture
 };
 [[nodiscard]] Plot plot(const std::string& script, const std::function<bool()>& cancelled = {});
+
+// --- Images as truths and candidates: a row for each pixel and channel ---
+
+// Names of layers or channels (exr::ExrFile::find). Empty: R, G, B.
+struct ImageLayers {
+  std::string truth = {};
+  std::string candidate = {};
+};
+
+// Two images, each an OpenEXR file or a NumPy array, pixel by pixel. Pixels are matched by their coordinates; an array
+// has the place of the other image.
+struct Images {
+  Truth truth;                   // a row for each pixel and channel whose true value is finite
+  std::vector<Measured> values;  // in its order
+  std::string candidate_file;
+  exr::Window window;                 // of the truth
+  std::size_t channels = 3;           // 1 or 3
+  std::vector<double> exact, theirs;  // `channels` for each pixel of the window; NaN where there is none
+};
+// Throws InputError if a file cannot be read, if channels are missing, or if the candidate lacks a pixel that the truth
+// has, unless `partial`; throws Cancelled.
+[[nodiscard]] Images read_images(const std::filesystem::path& truth, const std::filesystem::path& candidate,
+                                 const ImageLayers& layers = {}, bool partial = false);
+
+// The bytes of candidate minus truth: as EXR, a channel for each that was compared, NaN where nothing was; as PNG, in
+// colours.
+[[nodiscard]] std::string error_image(const Images& images, render::ImageKind kind);
 
 // --- Baselines ---
 

@@ -140,11 +140,10 @@ std::string list_of(const std::vector<std::string>& lines) {
 // Broken limits, the worst rows, and what else is to be known of a program.
 std::string details_of(const Score& score) {
   const Report& report = score.report;
-  std::vector<std::string> broken, rows;
+  std::vector<std::string> broken;
   for (const Verdict& verdict : report.verdicts) {
     if (!verdict.passed) broken.push_back(sentence(verdict));
   }
-  for (const RowError& row : report.worst) rows.push_back(row.name + ": " + describe(row));
   std::vector<std::string> known = report.matrix ? sentences(*report.matrix) : std::vector<std::string>();
   for (const std::string& warning : warnings(report)) known.push_back(warning);
   const auto part = [](const std::string& title, const std::vector<std::string>& lines) {
@@ -154,7 +153,7 @@ std::string details_of(const Score& score) {
                         (report.passed() ? "passed" : text::counted(broken.size(), "limit") + " exceeded"),
                     page::paragraph("File: <code>" + text::html(report.candidate_file) + "</code>") +
                         part("Limits that are exceeded:", broken) +
-                        part("Worst rows by " + std::string(to_string(report.worst_by)) + ":", rows) +
+                        part("Worst rows by " + std::string(to_string(report.worst_by)) + ":", worst_lines(report)) +
                         part("Also:", known));
 }
 

@@ -13,32 +13,16 @@
 
 #include "exactff/check.h"
 #include "matrix/other_programs.h"
+#include "text/names.h"
 
 namespace exactff::check {
+
+using text::NameList;
 
 inline constexpr std::string_view kSuite = "suite";  // the kind of a truth of questions
 
 // The receivers of the truth with their areas, and its sources without the further ones, in their order.
 [[nodiscard]] matrix::Order order_of(const Truth& truth);
-
-// Numbers names from 0 in the order of their first use.
-class NameList {
- public:
-  std::uint32_t number_of(const std::string& name) {
-    const auto [found, is_new] = numbers_.try_emplace(name, static_cast<std::uint32_t>(names_.size()));
-    if (is_new) names_.push_back(name);
-    return found->second;
-  }
-  [[nodiscard]] std::optional<std::uint32_t> find(const std::string& name) const {
-    const auto found = numbers_.find(name);
-    return found == numbers_.end() ? std::nullopt : std::optional(found->second);
-  }
-  [[nodiscard]] std::vector<std::string> take() { return std::move(names_); }
-
- private:
-  std::unordered_map<std::string, std::uint32_t> numbers_;
-  std::vector<std::string> names_;
-};
 
 // Rows of a truth by receiver and source.
 using RowKey = std::pair<std::string_view, std::uint32_t>;

@@ -10,6 +10,7 @@
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include <algorithm>
@@ -273,68 +274,62 @@ struct ExrFile::Content {
     }
   }
 
-  void open();
-  void list_channels(int part);
-  void read(std::span<const Channel> wanted, std::vector<std::vector<float>>& numbers);
-  void read_part(int part, std::span<const Channel> wanted, std::vector<std::vector<float>>& numbers);
+  void open() {
+    if (!has_magic_number(bytes)) {
+      text::refuse(name, "is no OpenEXR file", "its first four bytes are others", "give an .exr file");
+    }
+    if (const std::string fault = fault_of_headers(bytes); !fault.empty()) refuse("is damaged", fault);
+    guard([&] {
+      stream.emplace(bytes, name);
+      file.emplace(*stream, 0, false);
+      for (int part = 0; part < file->parts(); ++part) list_channels(part);
+    });
+  }
+
+  void list_channels(int part) {
+    const Imf::Header& header = file->header(part);
+    if (is_deep(header)) {
+      text::refuse(name, "is a deep image", "its pixels have several samples each", "save a flat image");
+    }
+    const std::string prefix = file->parts() > 1 && header.hasName() ? header.name() : std::string();
+    for (auto at = header.channels().begin(); at != header.channels().end(); ++at) {
+      channels.push_back({full_name(prefix, at.name()), kind_of(at.channel().type), static_cast<std::size_t>(part),
+                          at.name(), is_lossy(header)});
+    }
+  }
+
+  // Each part is decoded once.
+  void read(std::span<const Channel> wanted, std::vector<std::vector<float>>& numbers) {
+    for (int part = 0; part < file->parts(); ++part) {
+      if (std::ranges::any_of(wanted, [&](const Channel& one) { return one.part == static_cast<std::size_t>(part); })) {
+        read_part(part, wanted, numbers);
+      }
+    }
+  }
+
+  void read_part(int number, std::span<const Channel> wanted, std::vector<std::vector<float>>& numbers) {
+    constexpr int kRowsAtOnce = 64;  // between checks whether the user has cancelled
+    const Imf::Header& header = file->header(number);
+    const Imath::Box2i box = header.dataWindow();
+    const Window window = window_of(box);
+    Imf::FrameBuffer frame;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      if (wanted[i].part != static_cast<std::size_t>(number)) continue;
+      const Imf::Channel& kept = header.channels()[wanted[i].name_in_part];
+      if (kept.xSampling != 1 || kept.ySampling != 1) {
+        refuse("channel '" + wanted[i].name + "' does not have a number for each pixel", "it is subsampled");
+      }
+      frame.insert(wanted[i].name_in_part,
+                   Imf::Slice::Make(Imf::FLOAT, numbers[i].data(), box.min, window.width, window.height));
+    }
+    Imf::InputPart part(*file, number);
+    part.setFrameBuffer(frame);
+    for (int y = box.min.y; y <= box.max.y; y += kRowsAtOnce) {
+      kernel::poll();
+      part.readPixels(y, std::min(y + kRowsAtOnce - 1, box.max.y));
+    }
+  }
 };
-
-void ExrFile::Content::open() {
-  if (!has_magic_number(bytes)) {
-    text::refuse(name, "is no OpenEXR file", "its first four bytes are others", "give an .exr file");
-  }
-  if (const std::string fault = fault_of_headers(bytes); !fault.empty()) refuse("is damaged", fault);
-  guard([&] {
-    stream.emplace(bytes, name);
-    file.emplace(*stream, 0, false);
-    for (int part = 0; part < file->parts(); ++part) list_channels(part);
-  });
-}
-
-void ExrFile::Content::list_channels(int part) {
-  const Imf::Header& header = file->header(part);
-  if (is_deep(header)) {
-    text::refuse(name, "is a deep image", "its pixels have several samples each", "save a flat image");
-  }
-  const std::string prefix = file->parts() > 1 && header.hasName() ? header.name() : std::string();
-  for (auto at = header.channels().begin(); at != header.channels().end(); ++at) {
-    channels.push_back({full_name(prefix, at.name()), kind_of(at.channel().type), static_cast<std::size_t>(part),
-                        at.name(), is_lossy(header)});
-  }
-}
-
-// Each part is decoded once.
-void ExrFile::Content::read(std::span<const Channel> wanted, std::vector<std::vector<float>>& numbers) {
-  for (int part = 0; part < file->parts(); ++part) {
-    if (std::ranges::any_of(wanted, [&](const Channel& one) { return one.part == static_cast<std::size_t>(part); })) {
-      read_part(part, wanted, numbers);
-    }
-  }
-}
-
-void ExrFile::Content::read_part(int number, std::span<const Channel> wanted,
-                                 std::vector<std::vector<float>>& numbers) {
-  constexpr int kRowsAtOnce = 64;  // between checks whether the user has cancelled
-  const Imf::Header& header = file->header(number);
-  const Imath::Box2i box = header.dataWindow();
-  const Window window = window_of(box);
-  Imf::FrameBuffer frame;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (wanted[i].part != static_cast<std::size_t>(number)) continue;
-    const Imf::Channel& kept = header.channels()[wanted[i].name_in_part];
-    if (kept.xSampling != 1 || kept.ySampling != 1) {
-      refuse("channel '" + wanted[i].name + "' does not have a number for each pixel", "it is subsampled");
-    }
-    frame.insert(wanted[i].name_in_part,
-                 Imf::Slice::Make(Imf::FLOAT, numbers[i].data(), box.min, window.width, window.height));
-  }
-  Imf::InputPart part(*file, number);
-  part.setFrameBuffer(frame);
-  for (int y = box.min.y; y <= box.max.y; y += kRowsAtOnce) {
-    kernel::poll();
-    part.readPixels(y, std::min(y + kRowsAtOnce - 1, box.max.y));
-  }
-}
 
 ExrFile::ExrFile(std::string bytes, std::string name) : content_(std::make_unique<Content>()) {
   const kernel::StandardArithmetic arithmetic;
@@ -394,27 +389,6 @@ bool is_exr(const std::filesystem::path& path) {
 
 namespace {
 
-// Collects the bytes in memory: the library seeks back to write its table of offsets.
-class Memory : public Imf::OStream {
- public:
-  Memory() : Imf::OStream("memory") {}
-
-  void write(const char* bytes, int count) override {
-    const auto size = static_cast<std::size_t>(count);
-    if (bytes_.size() < at_ + size) bytes_.resize(at_ + size);
-    std::memcpy(bytes_.data() + at_, bytes, size);
-    at_ += size;
-  }
-  std::uint64_t tellp() override { return at_; }
-  void seekp(std::uint64_t position) override { at_ = position; }
-
-  [[nodiscard]] std::string take() { return std::move(bytes_); }
-
- private:
-  std::string bytes_;
-  std::size_t at_ = 0;
-};
-
 Imath::Box2i box_of(const Window& window) {
   return {{window.x, window.y}, {window.x + window.width - 1, window.y + window.height - 1}};
 }
@@ -433,13 +407,13 @@ std::string exr_of(const Image& image) {
     frame.insert(channel.name, Imf::Slice::Make(type, channel.bits.data(), {image.data.x, image.data.y},
                                                 image.data.width, image.data.height));
   }
-  Memory memory;
+  Imf::StdOSStream memory;
   {
     Imf::OutputFile file(memory, header, 0);
     file.setFrameBuffer(frame);
     file.writePixels(image.data.height);
   }  // the destructor writes the table of offsets
-  return memory.take();
+  return memory.str();
 }
 
 // --- Other image ---

@@ -166,6 +166,25 @@ std::vector<Channel> alpha_of(const ExrFile& file) {
   return found.size() == 1 ? found : std::vector<Channel>{};
 }
 
+// In camera space everything lies before the camera, which looks along +z or -z.
+std::string words_on_depth(const GBuffer& gbuffer) {
+  const auto in_front = [](const Receiver& r) { return r.point.z > 0.0; };
+  const auto behind = [](const Receiver& r) { return r.point.z < 0.0; };
+  if (std::ranges::all_of(gbuffer.receivers, in_front)) return "; every z is positive, as in camera space";
+  if (std::ranges::all_of(gbuffer.receivers, behind)) return "; every z is negative, as in camera space";
+  return {};
+}
+
+void require_most_on_faces(const GBuffer& gbuffer, std::size_t without, double tolerance) {
+  const std::size_t all = gbuffer.receivers.size();
+  if (2 * without <= all) return;
+  text::refuse(gbuffer.file,
+               "the points of " + text::counted_of(without, all, "pixel") + " lie on no face of the scene, within " +
+                   text::short_number(tolerance),
+               "the points are in another coordinate system or of another scene" + words_on_depth(gbuffer),
+               kSaveInTheWorld);
+}
+
 }  // namespace
 
 std::vector<Layer> ExrFile::layers() const {
@@ -231,29 +250,6 @@ GBuffer read_gbuffer(const ExrFile& file, const GBufferLayers& layers) {
   }
   return result;
 }
-
-namespace {
-
-// In camera space everything lies before the camera, which looks along +z or -z.
-std::string words_on_depth(const GBuffer& gbuffer) {
-  const auto in_front = [](const Receiver& r) { return r.point.z > 0.0; };
-  const auto behind = [](const Receiver& r) { return r.point.z < 0.0; };
-  if (std::ranges::all_of(gbuffer.receivers, in_front)) return "; every z is positive, as in camera space";
-  if (std::ranges::all_of(gbuffer.receivers, behind)) return "; every z is negative, as in camera space";
-  return {};
-}
-
-void require_most_on_faces(const GBuffer& gbuffer, std::size_t without, double tolerance) {
-  const std::size_t all = gbuffer.receivers.size();
-  if (2 * without <= all) return;
-  text::refuse(gbuffer.file,
-               "the points of " + text::counted_of(without, all, "pixel") + " lie on no face of the scene, within " +
-                   text::short_number(tolerance),
-               "the points are in another coordinate system or of another scene" + words_on_depth(gbuffer),
-               kSaveInTheWorld);
-}
-
-}  // namespace
 
 void place_on_faces(const Scene& scene, GBuffer& gbuffer, std::optional<double> tolerance) {
   const kernel::StandardArithmetic arithmetic;

@@ -12,7 +12,7 @@
 
 #include "kernel/double_double.h"
 #include "kernel/float_environment.h"
-#include "matrix/row_facts.h"
+#include "matrix/rows.h"
 #include "scene/selections.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -68,12 +68,18 @@ class ExactSum {
   std::vector<double> parts_;  // the largest one is the last
 };
 
-enum class Place : std::uint8_t { kPatches, kBack, kOpen, kBuried };
+// Where the entries of one row alone are, and their doubles.
+struct Rest {
+  std::vector<ViewFactor> Matrix::*given;
+  std::vector<double> Balanced::*rounded;
+};
+constexpr std::array<Rest, 3> kRests{
+    {{&Matrix::back, &Balanced::back}, {&Matrix::open, &Balanced::open}, {&Matrix::buried, &Balanced::buried}}};
 
 // An entry, or the two of a pair. Rows are numbered in the order of their names; first == second: of one row alone.
 struct Term {
   std::uint32_t first = 0, second = 0;
-  Place place = Place::kPatches;
+  const Rest* place = nullptr;                   // null: among the patches
   double lower = 0.0, value = 0.0, upper = 0.0;  // of X
 
   [[nodiscard]] bool is_pair() const { return first != second; }
@@ -122,19 +128,16 @@ class Balancing {
   [[nodiscard]] const ViewFactor& factor(std::uint32_t i, std::uint32_t j) const {
     return matrix_.factors.at(given_[i], given_[j]);
   }
-  [[nodiscard]] const std::vector<ViewFactor>& column(Place place) const {
-    return place == Place::kBack ? matrix_.back : place == Place::kOpen ? matrix_.open : matrix_.buried;
-  }
 
   void add_terms_of(std::uint32_t i) {
-    const auto add_single = [&](const ViewFactor& f, Place place) {
+    const auto add_single = [&](const ViewFactor& f, const Rest* place) {
       const auto [lower, upper] = times(areas_[i], f);
       if (upper > 0.0) terms_.push_back({i, i, place, lower, areas_[i] * f.value, upper});
     };
-    add_single(factor(i, i), Place::kPatches);
+    add_single(factor(i, i), nullptr);
     for (std::uint32_t j = i + 1; j < size(); ++j) add_pair(i, j);
-    for (const Place place : {Place::kBack, Place::kOpen, Place::kBuried}) {
-      if (!column(place).empty()) add_single(column(place)[given_[i]], place);
+    for (const Rest& rest : kRests) {
+      if (const auto& column = matrix_.*rest.given; !column.empty()) add_single(column[given_[i]], &rest);
     }
   }
 
@@ -152,7 +155,7 @@ class Balancing {
       return;
     }
     const double value = 0.5 * (areas_[i] * forth.value + areas_[j] * back.value);
-    terms_.push_back({i, j, Place::kPatches, bounds.lower, value, bounds.upper});
+    terms_.push_back({i, j, nullptr, bounds.lower, value, bounds.upper});
   }
 
   // --- Steps 1 to 3 ---
@@ -345,8 +348,8 @@ class Balancing {
   void set_claim(std::size_t i) {
     const auto take = [&](const ViewFactor& f) { result_.claim = weaker(result_.claim, f.claim); };
     for (std::size_t j = 0; j < size(); ++j) take(matrix_.factors.at(given_[i], j));
-    for (const Place place : {Place::kBack, Place::kOpen}) {
-      if (!column(place).empty()) take(column(place)[given_[i]]);
+    for (const auto* column : {&matrix_.back, &matrix_.open}) {
+      if (!column->empty()) take((*column)[given_[i]]);
     }
   }
 
@@ -366,8 +369,7 @@ class Balancing {
     lacks_ = excess(l);
     for (std::size_t i = 0; i < size(); ++i) lacks_[i] = -lacks_[i] / areas_[i];
     result_.entries.assign(size() * size(), 0.0);
-    for (const Place place : {Place::kBack, Place::kOpen, Place::kBuried})
-      rounded(place).assign(column(place).size(), 0.0);
+    for (const Rest& rest : kRests) (result_.*rest.rounded).assign((matrix_.*rest.given).size(), 0.0);
     for (const std::uint32_t k : order) round_term(terms_[k], x[k]);
     for (std::uint32_t i = 0; i < size(); ++i) lacks_[i] = -row_sum(i, -1.0).value();
     for (std::uint32_t i = 0; i < size(); ++i) mend(i);
@@ -375,16 +377,11 @@ class Balancing {
     if (result_.furthest > kFurthestRow) result_ = {};
   }
 
-  Numbers& rounded(Place place) {
-    return place == Place::kPatches ? result_.entries
-           : place == Place::kBack  ? result_.back
-           : place == Place::kOpen  ? result_.open
-                                    : result_.buried;
-  }
   // Where the entries of a term are.
   double& forth(const Term& term) {
     const std::size_t i = given_[term.first];
-    return term.place == Place::kPatches ? result_.entries[i * size() + given_[term.second]] : rounded(term.place)[i];
+    return term.place == nullptr ? result_.entries[i * size() + given_[term.second]]
+                                 : (result_.*term.place->rounded)[i];
   }
   double& back(const Term& term) { return result_.entries[given_[term.second] * size() + given_[term.first]]; }
 
@@ -392,8 +389,8 @@ class Balancing {
     ExactSum sum;
     sum.add(first);
     for (std::size_t j = 0; j < size(); ++j) sum.add(result_.entries[given_[i] * size() + j]);
-    for (const Place place : {Place::kBack, Place::kOpen, Place::kBuried}) {
-      if (!rounded(place).empty()) sum.add(rounded(place)[given_[i]]);
+    for (const Rest& rest : kRests) {
+      if (const Numbers& rounded = result_.*rest.rounded; !rounded.empty()) sum.add(rounded[given_[i]]);
     }
     return sum;
   }
@@ -452,7 +449,7 @@ class Balancing {
   }
 
   [[nodiscard]] const ViewFactor& single(const Term& term) const {
-    return term.place == Place::kPatches ? factor(term.first, term.first) : column(term.place)[given_[term.first]];
+    return term.place == nullptr ? factor(term.first, term.first) : (matrix_.*term.place->given)[given_[term.first]];
   }
 
   // --- Step 5 ---
@@ -510,33 +507,6 @@ class Balancing {
   Balanced result_;
 };
 
-}  // namespace
-
-Balanced balanced_of(const Matrix& matrix, std::span<const std::string> names) {
-  return Balancing(matrix, names).solve();
-}
-
-void require_balanceable(const Scene& scene, const Matrix& matrix) {
-  const Factors& all = matrix.factors;
-  if (all.from.empty() || all.from != all.to) {
-    text::refuse("the matrix has not the same patches as rows and as columns",
-                 "a balanced matrix has both of each pair", "give --from and --to the same patches, or neither");
-  }
-  if (const std::vector<std::string> reasons = reasons_against_one(scene, matrix); !reasons.empty()) {
-    text::refuse("rows need not add up to 1: " + text::enumerate(reasons),
-                 "a balanced matrix has rows that add up to 1",
-                 "compute all patches with backs and the sky, and mend or cut out what overlaps or is transparent");
-  }
-}
-
-Balanced balanced(const Scene& scene, const Matrix& matrix) {
-  const kernel::StandardArithmetic arithmetic;
-  require_balanceable(scene, matrix);
-  return balanced_of(matrix, names_of(scene, matrix.factors.from));
-}
-
-namespace {
-
 constexpr std::size_t kMostNamed = 6;
 
 // "the rows of a, b and 3 others"
@@ -562,6 +532,29 @@ std::string words_of_proof(const Scene& scene, const Matrix& matrix, const Balan
 }
 
 }  // namespace
+
+Balanced balanced_of(const Matrix& matrix, std::span<const std::string> names) {
+  return Balancing(matrix, names).solve();
+}
+
+void require_balanceable(const Scene& scene, const Matrix& matrix) {
+  const Factors& all = matrix.factors;
+  if (all.from.empty() || all.from != all.to) {
+    text::refuse("the matrix has not the same patches as rows and as columns",
+                 "a balanced matrix has both of each pair", "give --from and --to the same patches, or neither");
+  }
+  if (const std::vector<std::string> reasons = reasons_against_one(scene, matrix); !reasons.empty()) {
+    text::refuse("rows need not add up to 1: " + text::enumerate(reasons),
+                 "a balanced matrix has rows that add up to 1",
+                 "compute all patches with backs and the sky, and mend or cut out what overlaps or is transparent");
+  }
+}
+
+Balanced balanced(const Scene& scene, const Matrix& matrix) {
+  const kernel::StandardArithmetic arithmetic;
+  require_balanceable(scene, matrix);
+  return balanced_of(matrix, names_of(scene, matrix.factors.from));
+}
 
 std::vector<Problem> problems_of(const Scene& scene, const Matrix& matrix, const Balanced& balanced) {
   if (balanced.is_found()) return {};
@@ -598,9 +591,7 @@ Matrix with_values(Matrix matrix, const Balanced& balanced) {
     for (std::size_t k = 0; k < factors.size(); ++k) factors[k].value = values[k];
   };
   take(matrix.factors.entries, balanced.entries);
-  take(matrix.back, balanced.back);
-  take(matrix.open, balanced.open);
-  take(matrix.buried, balanced.buried);
+  for (const Rest& rest : kRests) take(matrix.*rest.given, balanced.*rest.rounded);
   return matrix;
 }
 

@@ -18,40 +18,30 @@ using table::Strength;
 using table::Type;
 using Field = table::Field<Entry>;
 
-// A column of a member of ViewFactor.
 template <auto Member>
-Field factor(std::string name, Type type, std::string unit, Strength strength) {
-  using Value = std::remove_cvref_t<decltype(std::declval<ViewFactor&>().*Member)>;
-  using InTable = std::conditional_t<std::same_as<Value, std::size_t>, std::uint64_t, Value>;
-  return {{std::move(name), type, std::move(unit), strength},
-          [](const Entry& entry) -> Cell { return InTable{entry.factor.*Member}; },
-          [](Entry& entry, const Cell& cell) {
-            const InTable* const value = std::get_if<InTable>(&cell);
-            if (value != nullptr) entry.factor.*Member = *value;
-            return value != nullptr;
-          }};
+Field number(std::string name, Strength strength, std::string unit = {}) {
+  return table::member_field<Member, Entry>({.name = std::move(name), .unit = std::move(unit), .strength = strength});
 }
 
-// The same for a word.
 template <auto Member>
 Field word(std::string name) {
   using Word = std::remove_cvref_t<decltype(std::declval<ViewFactor&>().*Member)>;
   return {{.name = std::move(name), .type = Type::kText, .strength = Strength::kProved},
-          [](const Entry& entry) -> Cell { return to_string(entry.factor.*Member); },
+          [](const Entry& entry) -> Cell { return to_string(entry.*Member); },
           [](Entry& entry, const Cell& cell) {
             const std::optional<Word> known = named<Word>(std::get<std::string_view>(cell));
-            if (known) entry.factor.*Member = *known;
+            if (known) entry.*Member = *known;
             return known.has_value();
           }};
 }
 
 Field area_to() {
   return {{"area_to", Type::kNumber, "area", Strength::kEstimated},
-          [](const Entry& entry) -> Cell { return entry.has_area_to ? Cell(entry.factor.area_to) : Cell(); },
+          [](const Entry& entry) -> Cell { return entry.has_area_to ? Cell(entry.area_to) : Cell(); },
           [](Entry& entry, const Cell& cell) {
             const double* const area = std::get_if<double>(&cell);
             entry.has_area_to = area != nullptr;
-            entry.factor.area_to = area != nullptr ? *area : 0.0;
+            entry.area_to = area != nullptr ? *area : 0.0;
             return true;
           }};
 }
@@ -68,28 +58,14 @@ void add(text::Fnv1a& hash, std::span<const Selection> patches) {
 
 const table::Fields<Entry>& columns() {
   static const table::Fields<Entry> all(
-      "matrix",
-      {table::member_field<&Entry::from, Entry>({.name = "from", .key = true}),
-       table::member_field<&Entry::to, Entry>({.name = "to", .key = true}),
-       factor<&ViewFactor::value>("factor", Type::kNumber, "", Strength::kStated),
-       factor<&ViewFactor::lower>("lower", Type::kNumber, "", Strength::kStated),
-       factor<&ViewFactor::upper>("upper", Type::kNumber, "", Strength::kStated), word<&ViewFactor::claim>("claim"),
-       word<&ViewFactor::way>("way"), factor<&ViewFactor::accurate>("accurate", Type::kFlag, "", Strength::kProved),
-       factor<&ViewFactor::area_from>("area_from", Type::kNumber, "area", Strength::kEstimated), area_to(),
-       factor<&ViewFactor::cells>("cells", Type::kCount, "", Strength::kProved),
-       factor<&ViewFactor::event_cells>("event_cells", Type::kCount, "", Strength::kProved),
-       word<&ViewFactor::limit>("limit")});
-  return all;
-}
-
-const table::Fields<Entry>& columns_with_balanced() {
-  static const table::Fields<Entry> all("matrix", [] {
-    std::vector<Field> fields = columns().all();
-    const auto after_upper = std::ranges::find(fields, "claim", [](const Field& field) { return field.column.name; });
-    fields.insert(after_upper,
-                  table::member_field<&Entry::balanced, Entry>({.name = "balanced", .strength = Strength::kEstimated}));
-    return fields;
-  }());
+      "matrix", {table::member_field<&Entry::from, Entry>({.name = "from", .key = true}),
+                 table::member_field<&Entry::to, Entry>({.name = "to", .key = true}),
+                 number<&Entry::value>("factor", Strength::kStated), number<&Entry::lower>("lower", Strength::kStated),
+                 number<&Entry::upper>("upper", Strength::kStated), word<&Entry::claim>("claim"),
+                 word<&Entry::way>("way"), number<&Entry::accurate>("accurate", Strength::kProved),
+                 number<&Entry::area_from>("area_from", Strength::kEstimated, "area"), area_to(),
+                 number<&Entry::cells>("cells", Strength::kProved),
+                 number<&Entry::event_cells>("event_cells", Strength::kProved), word<&Entry::limit>("limit")});
   return all;
 }
 
@@ -142,46 +118,15 @@ namespace {
 
 constexpr std::string_view kSum = "(sum ";
 
-}  // namespace
-
-std::string name_of(const GroupSum& sum) { return std::string(kSum) + sum.name + ')'; }
-
-std::vector<std::string> sums_among(std::vector<std::string> further) {
-  std::erase_if(further, [](const std::string& name) { return !name.starts_with(kSum); });
-  return further;
+const table::Fields<Entry>& columns_with_balanced() {
+  static const table::Fields<Entry> all("matrix", [] {
+    std::vector<Field> fields = columns().all();
+    const auto after_upper = std::ranges::find(fields, "claim", [](const Field& field) { return field.column.name; });
+    fields.insert(after_upper, number<&Entry::balanced>("balanced", Strength::kEstimated));
+    return fields;
+  }());
+  return all;
 }
-
-table::Table table_of(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options,
-                      const Balanced* balanced) {
-  const Factors& all = matrix.factors;
-  Surroundings surroundings{!matrix.back.empty(), !matrix.open.empty(), !matrix.buried.empty()};
-  const std::span<const GroupSum> sums = balanced != nullptr ? std::span<const GroupSum>() : matrix.sums;
-  for (const GroupSum& sum : sums) surroundings.sums.push_back(name_of(sum));
-  const table::Fields<Entry>& fields = balanced != nullptr ? columns_with_balanced() : columns();
-  table::Table table("matrix", head_of(scene, all.from, all.to, options, surroundings), fields.columns());
-  Entry entry;
-  const auto add = [&](std::string_view to, const std::vector<ViewFactor>& factors,
-                       std::vector<double> Balanced::*values, std::size_t k, bool has_area_to) {
-    entry.to = to;
-    entry.factor = factors[k];
-    entry.balanced = balanced != nullptr ? (balanced->*values)[k] : 0.0;
-    entry.has_area_to = has_area_to;
-    fields.append(entry, table);
-  };
-  for (std::size_t i = 0; i < all.from.size(); ++i) {
-    entry.from = scene.name_of(all.from[i]);
-    for (std::size_t j = 0; j < all.to.size(); ++j) {
-      add(scene.name_of(all.to[j]), all.entries, &Balanced::entries, i * all.to.size() + j, true);
-    }
-    if (surroundings.back) add(kBack, matrix.back, &Balanced::back, i, true);
-    if (surroundings.open) add(kOpen, matrix.open, &Balanced::open, i, false);
-    if (surroundings.buried) add(kBuried, matrix.buried, &Balanced::buried, i, false);
-    for (std::size_t k = 0; k < sums.size(); ++k) add(surroundings.sums[k], sums[k].factors, nullptr, i, true);
-  }
-  return table;
-}
-
-namespace {
 
 constexpr const char* kAdvice = "use the file as `exactff matrix` wrote it";
 
@@ -217,7 +162,7 @@ class NamedReader {
 
   void take(std::size_t row) {
     const auto bad = columns().read(table_, row, entry_);
-    const ViewFactor& f = factors_.emplace_back(entry_.factor);
+    const ViewFactor& f = factors_.emplace_back(entry_);
     if (bad) {
       complain(table_.line_of(row), "column " + text::in_quotes(*bad) + " has an impossible value");
     } else if (!(0.0 <= f.lower && f.lower <= f.value && f.value <= f.upper && f.upper <= most_to(to_[row])) ||
@@ -283,6 +228,43 @@ class NamedReader {
 };
 
 }  // namespace
+
+std::string name_of(const GroupSum& sum) { return std::string(kSum) + sum.name + ')'; }
+
+std::vector<std::string> sums_among(std::vector<std::string> further) {
+  std::erase_if(further, [](const std::string& name) { return !name.starts_with(kSum); });
+  return further;
+}
+
+table::Table table_of(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options,
+                      const Balanced* balanced) {
+  const Factors& all = matrix.factors;
+  Surroundings surroundings{!matrix.back.empty(), !matrix.open.empty(), !matrix.buried.empty()};
+  const std::span<const GroupSum> sums = balanced != nullptr ? std::span<const GroupSum>() : matrix.sums;
+  for (const GroupSum& sum : sums) surroundings.sums.push_back(name_of(sum));
+  const table::Fields<Entry>& fields = balanced != nullptr ? columns_with_balanced() : columns();
+  table::Table table("matrix", head_of(scene, all.from, all.to, options, surroundings), fields.columns());
+  Entry entry;
+  const auto add = [&](std::string_view to, const std::vector<ViewFactor>& factors,
+                       std::vector<double> Balanced::*values, std::size_t k, bool has_area_to) {
+    entry.to = to;
+    static_cast<ViewFactor&>(entry) = factors[k];
+    entry.balanced = balanced != nullptr ? (balanced->*values)[k] : 0.0;
+    entry.has_area_to = has_area_to;
+    fields.append(entry, table);
+  };
+  for (std::size_t i = 0; i < all.from.size(); ++i) {
+    entry.from = scene.name_of(all.from[i]);
+    for (std::size_t j = 0; j < all.to.size(); ++j) {
+      add(scene.name_of(all.to[j]), all.entries, &Balanced::entries, i * all.to.size() + j, true);
+    }
+    if (surroundings.back) add(kBack, matrix.back, &Balanced::back, i, true);
+    if (surroundings.open) add(kOpen, matrix.open, &Balanced::open, i, false);
+    if (surroundings.buried) add(kBuried, matrix.buried, &Balanced::buried, i, false);
+    for (std::size_t k = 0; k < sums.size(); ++k) add(surroundings.sums[k], sums[k].factors, nullptr, i, true);
+  }
+  return table;
+}
 
 NamedMatrix read_named(const std::filesystem::path& file) {
   const kernel::StandardArithmetic arithmetic;

@@ -12,15 +12,13 @@
 
 namespace exactff::matrix {
 
-struct Entry {
+struct Entry : ViewFactor {
   std::string from, to;  // names of patches, or of an additional column
-  ViewFactor factor;
   double balanced = 0.0;
   bool has_area_to = true;  // not of what is open or buried
 };
 
 [[nodiscard]] const table::Fields<Entry>& columns();
-[[nodiscard]] const table::Fields<Entry>& columns_with_balanced();
 
 // The claim, way or limit of this text.
 template <class Word>

@@ -1,60 +1,143 @@
-#include <algorithm>
-#include <set>
+// A matrix, job by job: at once, or by way of a journal.
+#include "jobs/compute.h"
 
-#include "exactff/matrix.h"
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "files/file.h"
 #include "files/parallel.h"
+#include "jobs/rows.h"
 #include "kernel/float_environment.h"
-#include "matrix/entry_jobs.h"
-#include "matrix/row_facts.h"
+#include "matrix/rows.h"
 #include "matrix/surroundings.h"
 #include "text/escape.h"
 #include "text/refuse.h"
+#include "text/text_lines.h"
+#include "view_factors/pairs.h"
 
 namespace exactff::matrix {
 namespace {
 
-using kernel::above;
-using kernel::below;
+namespace fs = std::filesystem;
 
-// Each patch with area is a column, as a whole, exactly once.
-bool has_every_patch(const Scene& scene, const std::vector<Selection>& to) {
-  std::set<PatchId> seen;
-  for (const Selection& patch : to) {
-    if (patch.face || !seen.insert(patch.patch).second) return false;
+bool is_whole(const kernel::Disc& share) { return share.centre == 1.0 && share.radius == 0.0; }
+
+bool some_is_buried(const view_factors::Pairs& pairs, std::size_t rows) {
+  for (std::size_t row = 0; row < rows; ++row) {
+    if (!is_whole(pairs.exposed_share(row))) return true;
   }
-  for (std::size_t p = 0; p < scene.patches().size(); ++p) {
-    const Selection patch{static_cast<PatchId>(p), {}};
-    if (!scene.faces_of(patch).empty() && !seen.contains(patch.patch)) return false;
-  }
-  return true;
+  return false;
 }
 
-// No patch or face is a column twice, and no face beside its patch.
-bool are_different(const std::vector<Selection>& to) {
-  std::set<PatchId> patches, with_faces;
-  std::set<FaceId> faces;
-  for (const Selection& column : to) {
-    const bool is_new = column.face ? faces.insert(*column.face).second : patches.insert(column.patch).second;
-    if (!is_new) return false;
-    if (column.face) with_faces.insert(column.patch);
+ViewFactor buried_share(const kernel::Disc& exposed) {
+  if (exposed.radius == 0.0 && (exposed.centre == 1.0 || exposed.centre == 0.0)) {
+    const double buried = 1.0 - exposed.centre;
+    return {
+        .value = buried, .lower = buried, .upper = buried, .claim = buried == 0.0 ? Claim::kZero : Claim::kCertified};
   }
-  return std::ranges::none_of(with_faces, [&](PatchId patch) { return patches.contains(patch); });
+  const kernel::Disc share = kernel::Disc{.centre = 1.0} - exposed;
+  const double lower = std::clamp(lower_end(share), 0.0, 1.0), upper = std::clamp(upper_end(share), 0.0, 1.0);
+  return {.value = std::clamp(share.centre, lower, upper), .lower = lower, .upper = upper, .claim = Claim::kCertified};
 }
 
-// By its number, row by row, with back, open and buried.
-ViewFactor& entry_of(Matrix& matrix, std::size_t entry) {
-  const std::size_t patches = matrix.factors.to.size();
-  const std::size_t width =
-      patches + (matrix.back.empty() ? 0 : 1) + (matrix.open.empty() ? 0 : 1) + (matrix.buried.empty() ? 0 : 1);
-  const std::size_t row = entry / width, column = entry % width;
-  if (column < patches) return matrix.factors.entries[row * patches + column];
-  if (!matrix.buried.empty() && column + 1 == width) return matrix.buried[row];
-  return (matrix.back.empty() || column > patches ? matrix.open : matrix.back)[row];
-}
+// Entries are numbered row by row, as in the CSV file: to patches, then (back), (open), (buried).
+class EntryJobs {
+ public:
+  // Throws what compute throws. Keeps a reference to the scene.
+  EntryJobs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to, const Options& options)
+      : scene_(scene),
+        from_(from.begin(), from.end()),
+        to_(to.begin(), to.end()),
+        pairs_(scene, from, to, options.factors),
+        has_buried_(some_is_buried(pairs_, from.size())),
+        width_(to.size() + (options.backs ? 1 : 0) + (options.open ? 1 : 0) + (has_buried_ ? 1 : 0)) {
+    if (from.empty()) return;
+    if (options.backs) to_backs_.emplace(scene, from, options.factors);
+    if (options.open) to_sky_.emplace(scene, from, options.factors, pairs_);
+  }
+
+  [[nodiscard]] std::size_t count() const { return pairs_.count() + (width_ - to_.size()) * from_.size(); }
+  [[nodiscard]] std::size_t width() const { return width_; }     // entries of a row
+  [[nodiscard]] bool has_buried() const { return has_buried_; }  // a part of some row is
+
+  // The entries that a job gives.
+  [[nodiscard]] std::vector<std::size_t> entries_of(std::size_t job) const {
+    if (job >= pairs_.count()) {
+      const std::size_t further = job - pairs_.count();  // back of every row, then open, then buried
+      return {further % from_.size() * width_ + to_.size() + further / from_.size()};
+    }
+    std::vector<std::size_t> entries = pairs_.entries_of(job);
+    for (std::size_t& entry : entries) entry = entry / to_.size() * width_ + entry % to_.size();
+    return entries;
+  }
+
+  // Calls take(entry, factor) in the order of entries_of. From any thread.
+  template <class Take>
+  void compute(std::size_t job, const Take& take) const {
+    const kernel::StandardArithmetic arithmetic;
+    const std::vector<std::size_t> entries = entries_of(job);
+    if (job < pairs_.count()) {
+      std::size_t next = 0;
+      pairs_.compute(job, [&](std::size_t, const ViewFactor& f) { take(entries[next++], f); });
+      return;
+    }
+    const std::size_t row = entries.front() / width_;
+    const Column column = kind_of(entries.front() % width_);
+    ViewFactor factor = column == Column::kOfBacks ? to_backs_->of_row(row)
+                        : column == Column::kOfSky ? to_sky_->of_row(row)
+                                                   : buried_share(pairs_.exposed_share(row));
+    factor.area_from = pairs_.area_from(row);
+    take(entries.front(), factor);
+  }
+
+  // "from 'floor' to 'light'", for messages.
+  [[nodiscard]] std::string name(std::size_t job) const {
+    const std::size_t entry = entries_of(job).front();
+    return "from " + text::in_quotes(scene_.name_of(from_[entry / width_])) + " to " +
+           text::in_quotes(name_of_column(entry % width_));
+  }
+
+  // Sets all but the factor.
+  void describe(std::size_t number, Entry& entry) const {
+    const std::size_t column = number % width_;
+    entry.from = scene_.name_of(from_[number / width_]);
+    entry.to = name_of_column(column);
+    entry.has_area_to = kind_of(column) == Column::kOfPatch || kind_of(column) == Column::kOfBacks;
+  }
+
+  // Where a matrix has it.
+  [[nodiscard]] ViewFactor& place_in(Matrix& matrix, std::size_t entry) const {
+    const std::size_t row = entry / width_, column = entry % width_;
+    const Column kind = kind_of(column);
+    if (kind == Column::kOfPatch) return matrix.factors.entries[row * to_.size() + column];
+    return (kind == Column::kOfBacks ? matrix.back : kind == Column::kOfSky ? matrix.open : matrix.buried)[row];
+  }
+
+ private:
+  enum class Column { kOfPatch, kOfBacks, kOfSky, kOfBuried };
+  [[nodiscard]] Column kind_of(std::size_t column) const {
+    if (column < to_.size()) return Column::kOfPatch;
+    if (has_buried_ && column + 1 == width_) return Column::kOfBuried;
+    return to_backs_ && column == to_.size() ? Column::kOfBacks : Column::kOfSky;
+  }
+  [[nodiscard]] std::string name_of_column(std::size_t column) const {
+    const Column kind = kind_of(column);
+    if (kind == Column::kOfPatch) return scene_.name_of(to_[column]);
+    return std::string(kind == Column::kOfBacks ? kBack : kind == Column::kOfSky ? kOpen : kBuried);
+  }
+
+  const Scene& scene_;
+  const std::vector<Selection> from_, to_;
+  view_factors::Pairs pairs_;
+  bool has_buried_;
+  std::size_t width_;
+  std::optional<BackFactors> to_backs_;
+  std::optional<OpenFactors> to_sky_;
+};
 
 }  // namespace
-
-Claim weaker(Claim a, Claim b) { return std::min(a, b); }
 
 Matrix compute(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
                const Options& options, const Hooks& hooks) {
@@ -70,106 +153,119 @@ Matrix compute(const Scene& scene, std::span<const Selection> from, std::span<co
         return jobs.name(job);
       }};
   const files::Body body = [&](std::size_t job) {
-    jobs.compute(job, [&](std::size_t entry, const ViewFactor& f) { entry_of(result, entry) = f; });
+    jobs.compute(job, [&](std::size_t entry, const ViewFactor& f) { jobs.place_in(result, entry) = f; });
   };
   files::parallel_for(loop, hooks, [&] { return body; });
   return result;
 }
 
-std::vector<Sum> row_sums(const Matrix& matrix) {
-  const kernel::StandardArithmetic arithmetic;
-  std::vector<Sum> sums(matrix.factors.from.size());
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    const auto add = [&sum = sums[i]](const ViewFactor& f) {
-      if (f.lower > 0.0) sum.lower = sum.lower == 0.0 ? f.lower : below(sum.lower + f.lower);
-      if (f.upper > 0.0) sum.upper = sum.upper == 0.0 ? f.upper : above(sum.upper + f.upper);
-    };
-    for (std::size_t j = 0; j < matrix.factors.to.size(); ++j) add(matrix.factors.at(i, j));
-    if (!matrix.back.empty()) add(matrix.back[i]);
-    if (!matrix.open.empty()) add(matrix.open[i]);
-    if (!matrix.buried.empty()) add(matrix.buried[i]);
-  }
-  return sums;
-}
-
-std::vector<Sum> clipped_row_sums(const Scene& scene, const Matrix& matrix) {
-  std::vector<Sum> sums = row_sums(matrix);
-  if (!are_different(matrix.factors.to) || !scene.transparent().empty() || have_fronts_in_common(scene)) return sums;
-  for (Sum& sum : sums) {
-    if (sum.lower <= 1.0) sum.upper = std::min(sum.upper, 1.0);  // else a bound does not hold, and it shows
-  }
-  return sums;
-}
+// --- By way of a journal ---
 
 namespace {
 
-std::vector<std::size_t> columns_of(const Scene& scene, const std::string& name, const std::vector<Selection>& to) {
-  std::set<std::size_t> columns;
-  for (const Selection& part : scene.select_all(name)) {
-    const auto found = std::ranges::find(to, part);
-    if (found == to.end()) {
-      text::refuse("the sum of " + text::in_quotes(name, text::kShownName) + " is asked for, and its part " +
-                       text::in_quotes(scene.name_of(part), text::kShownName) + " is no column",
-                   "a sum is of columns of the matrix", "name it by --to as well");
-    }
-    columns.insert(static_cast<std::size_t>(found - to.begin()));
+// Jobs take from microseconds to minutes. Small chunks share them out evenly; as many as this cost little.
+constexpr std::uint64_t kChunks = 4096;
+constexpr std::uint64_t kLargestChunk = 64;
+
+Request require_valid(Request request) {
+  jobs::require_shard(request.shard);
+  const bool has_columns = !request.to.empty() || request.options.backs || request.options.open;
+  if (request.scene == nullptr || request.from.empty() || !has_columns) {
+    text::refuse(std::string("the matrix has no ") + (has_columns ? "rows" : "columns"), "there is nothing to compute",
+                 "name patches by --from and --to");
   }
-  return {columns.begin(), columns.end()};
+  return request;
 }
 
-ViewFactor sum_of(const Factors& all, std::size_t row, const std::vector<std::size_t>& columns, bool at_most_one,
-                  double accuracy) {
-  ViewFactor sum = all.at(row, columns.front());
-  for (const std::size_t column : std::span(columns).subspan(1)) {
-    const ViewFactor& f = all.at(row, column);
-    sum.value += f.value;
-    if (f.lower > 0.0) sum.lower = sum.lower == 0.0 ? f.lower : below(sum.lower + f.lower);
-    if (f.upper > 0.0) sum.upper = sum.upper == 0.0 ? f.upper : above(sum.upper + f.upper);
-    sum.area_to += f.area_to;
-    sum.claim = weaker(sum.claim, f.claim);
-    if (f.way == Way::kPoints) sum.way = f.way;
-    if (sum.limit == Limit::kNone) sum.limit = f.limit;
-    sum.cells += f.cells;
-    sum.event_cells += f.event_cells;
+// Each job gives one or two entries, that is, lines of the table.
+class Rows : public jobs::Rows {
+ public:
+  // Throws what compute throws, and InputError if there is nothing to compute.
+  explicit Rows(Request request)
+      : request_(require_valid(std::move(request))),
+        entries_(*request_.scene, request_.from, request_.to, request_.options) {
+    const std::uint64_t count = entries_.count();
+    const auto chunk = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(count / kChunks, 1, kLargestChunk));
+    const int threads = request_.options.threads > 0 ? request_.options.threads : files::usable_threads();
+    plan_ = {{.command = "matrix", .row = "pair", .rows = "pairs"}, count, chunk, request_.shard, threads};
+    numbered_ = true;
+    about_ = head_of(*request_.scene, request_.from, request_.to, request_.options.factors,
+                     {request_.options.backs, request_.options.open, entries_.has_buried()});
+    columns_ = matrix::columns().columns();
   }
-  if (at_most_one && sum.lower <= 1.0)
-    sum.upper = std::min(sum.upper, 1.0);  // else a bound does not hold, and it shows
-  sum.value = std::clamp(sum.value, sum.lower, sum.upper);
-  sum.accurate = sum.upper - sum.lower <= accuracy;
-  return sum;
+
+  [[nodiscard]] std::string name(std::uint64_t row) const override { return entries_.name(row); }
+  [[nodiscard]] std::vector<std::uint64_t> lines_of(std::uint64_t row) const override {
+    const std::vector<std::size_t> entries = entries_.entries_of(row);
+    return {entries.begin(), entries.end()};
+  }
+  [[nodiscard]] std::uint64_t line_count() const override { return request_.from.size() * entries_.width(); }
+  [[nodiscard]] std::unique_ptr<Computer> computer() const override {
+    return std::make_unique<EntryComputer>(entries_);
+  }
+
+ private:
+  class EntryComputer : public Computer {
+   public:
+    explicit EntryComputer(const EntryJobs& entries) : entries_(entries) {}
+    void append(std::uint64_t row, std::string& text) override {
+      entries_.compute(row, [&](std::size_t number, const ViewFactor& f) {
+        text += std::to_string(number) + ',';
+        entries_.describe(number, entry_);
+        static_cast<ViewFactor&>(entry_) = f;
+        matrix::columns().append_csv(entry_, text);
+      });
+    }
+
+   private:
+    const EntryJobs& entries_;
+    Entry entry_;
+  };
+
+  Request request_;
+  EntryJobs entries_;
+};
+
+bool are_names(const Scene& scene, const std::vector<Selection>& patches, const std::vector<std::string>& read) {
+  return std::ranges::equal(patches, read, [&](const Selection& patch, const std::string& name) {
+    return text::csv_field(scene.name_of(patch)) == text::csv_field(name);
+  });
 }
 
 }  // namespace
 
-void add_sums(const Scene& scene, std::span<const std::string> names, double accuracy, Matrix& matrix) {
+jobs::Summary write(const Request& request, const fs::path& file, jobs::Existing existing, const jobs::RowHooks& hooks,
+                    jobs::Team* team) {
   const kernel::StandardArithmetic arithmetic;
-  const Factors& all = matrix.factors;
-  const bool at_most_one = are_different(all.to) && scene.transparent().empty() && !have_fronts_in_common(scene);
-  for (const std::string& name : names) {
-    if (std::ranges::find(matrix.sums, name, &GroupSum::name) != matrix.sums.end()) {
-      text::refuse("the sum of " + text::in_quotes(name, text::kShownName) + " is asked for twice",
-                   "its column would be there twice", "give each name once");
-    }
-    GroupSum sum{name, columns_of(scene, name, all.to), {}};
-    for (std::size_t i = 0; i < all.from.size(); ++i) {
-      sum.factors.push_back(sum_of(all, i, sum.columns, at_most_one, accuracy));
-    }
-    matrix.sums.push_back(std::move(sum));
+  const Rows rows(request);
+  files::require_not_read(file, request.scene->files());
+  return jobs::write(rows, file, existing, hooks, team);
+}
+
+jobs::Summary write(const Request& request, const fs::path& file, jobs::Existing existing,
+                    const jobs::RowHooks& hooks) {
+  return write(request, file, existing, hooks, nullptr);
+}
+
+int follow(jobs::Team& team, const std::function<Request()>& request, const jobs::RowHooks& hooks) {
+  return jobs::follow(
+      team, [&] { return std::make_unique<Rows>(request()); }, hooks);
+}
+
+Matrix read(const Request& request, const fs::path& file) { return matrix_of(request, read_named(file)); }
+
+Matrix matrix_of(const Request& request, NamedMatrix named) {
+  const bool same = are_names(*request.scene, request.from, named.from) &&
+                    are_names(*request.scene, request.to, named.to) && named.back.empty() != request.options.backs &&
+                    named.open.empty() != request.options.open;
+  if (!same) {
+    text::refuse(named.file, "holds other rows or columns than those that are asked for",
+                 "its entries would be taken for others", "compute the matrix again, or name another file");
   }
-}
-
-std::vector<std::string> reasons_against_one(const Scene& scene, const Factors& factors, Surroundings known) {
-  std::vector<std::string> reasons;
-  if (!has_every_patch(scene, factors.to)) reasons.emplace_back("not every patch is a column, once");
-  if (!known.back) reasons.emplace_back("what meets backs is not computed");
-  if (!known.open) reasons.emplace_back("what is open is not computed");
-  if (!scene.transparent().empty()) reasons.emplace_back("some faces are transparent");
-  if (have_fronts_in_common(scene)) reasons.emplace_back("fronts of different patches overlap in one plane");
-  return reasons;
-}
-
-std::vector<std::string> reasons_against_one(const Scene& scene, const Matrix& matrix) {
-  return reasons_against_one(scene, matrix.factors, {.back = !matrix.back.empty(), .open = !matrix.open.empty()});
+  return {{request.from, request.to, std::move(named.entries)},
+          std::move(named.back),
+          std::move(named.open),
+          std::move(named.buried)};
 }
 
 }  // namespace exactff::matrix

@@ -5,20 +5,65 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
+#include "exactff/matrix.h"
 #include "kernel/filter.h"
+#include "kernel/float_environment.h"
 #include "kernel/poll.h"
 #include "scene/closed_surfaces.h"
 #include "scene/contacts.h"
-#include "scene/scene_copy.h"
 #include "scene/selections.h"
 #include "text/refuse.h"
-#include "view_factors/pairs.h"
+#include "text/text_lines.h"
 #include "visibility/source_plane.h"
 
 namespace exactff::matrix {
+namespace {
+
+using kernel::above;
+using kernel::below;
+using view_factors::Columns;
+
+std::vector<Selection> in_copy(const Scene& copy, std::span<const Selection> patches) {
+  std::vector<Selection> result(patches.begin(), patches.end());
+  for (Selection& patch : result) patch.scene = copy.id();
+  return result;
+}
+
+std::vector<Selection> in_copy(const Scene& copy, std::span<const PatchId> patches) {
+  std::vector<Selection> result;
+  for (const PatchId patch : patches) result.push_back({patch, {}, copy.id()});
+  return result;
+}
+
+ViewFactorOptions as_one_direction(ViewFactorOptions options) {
+  options.both_directions = false;
+  return options;
+}
+
+}  // namespace
+
+Targets::Targets(Added added, std::span<const Selection> from, const ViewFactorOptions& options)
+    : scene_(added.copy.take()),
+      from_(in_copy(scene_, from)),
+      to_(in_copy(scene_, added.patches)),
+      pairs_(scene_, from_, to_, as_one_direction(options), added.kinds) {}
+
+ViewFactor Targets::factor(std::size_t row, std::size_t column, double finer) const {
+  const std::size_t entry = row * to_.size() + column;
+  ViewFactor result;
+  const auto take = [&](std::size_t of, const ViewFactor& f) {
+    if (of == entry) result = f;
+  };
+  pairs_.compute(pairs_.pair_of(entry), take, finer);
+  return result;
+}
+
+// --- Backs ---
+
 namespace {
 
 std::vector<std::uint32_t> corners_of(const Scene& scene, const Piece& piece) {
@@ -58,7 +103,7 @@ bool have_same_plane(const Scene& scene, std::uint32_t a, std::uint32_t b) {
 // Pieces that are not transparent.
 std::vector<SharedPlane> planes_of(const Scene& scene) {
   SceneCopy copy(scene);
-  const Selection backs = copy.add_patch("backs");
+  const PatchId backs = copy.add_patch("backs");
   for (const Piece& piece : scene.pieces()) copy.add_face(backs, reversed_corners_of(scene, piece));
   const Scene both = copy.take();
   const auto count = static_cast<std::uint32_t>(scene.pieces().size());
@@ -95,38 +140,73 @@ bool sort_out(const Scene& scene, SharedPlane& plane) {
   return some_overlap;
 }
 
-}  // namespace
+constexpr double kOfRoundings = 1.0 + 0x1p-20;  // of a sum, unless the accuracy is near them
 
-std::vector<Selection> of_any_scene(std::span<const Selection> patches) {
-  std::vector<Selection> result(patches.begin(), patches.end());
-  for (Selection& patch : result) patch.scene = kAnyScene;
-  return result;
+void take_work(ViewFactor& sum, const ViewFactor& f) {
+  sum.claim = weaker(sum.claim, f.claim);
+  sum.way = std::max(sum.way, f.way);
+  if (sum.limit == Limit::kNone) sum.limit = f.limit;
+  sum.cells += f.cells;
+  sum.event_cells += f.event_cells;
 }
 
-SceneWithBacks with_backs(const Scene& scene) {
+// Zero is exact, so that proved zeros stay zeros.
+void add(ViewFactor& sum, const ViewFactor& f) {
+  take_work(sum, f);
+  if (f.upper == 0.0) return;
+  const bool first = sum.upper == 0.0;
+  sum.value += f.value;
+  sum.lower = first ? f.lower : std::max(0.0, below(sum.lower + f.lower));
+  sum.upper = first ? f.upper : above(sum.upper + f.upper);
+}
+
+// f is a part of the sum.
+void subtract(ViewFactor& sum, const ViewFactor& f) {
+  take_work(sum, f);
+  if (f.upper == 0.0) return;
+  sum.value -= f.value;
+  sum.lower = below(sum.lower - f.upper);
+  sum.upper = above(sum.upper - f.lower);
+}
+
+void clamp(ViewFactor& sum) {
+  sum.lower = std::clamp(sum.lower, 0.0, 1.0);
+  sum.upper = std::clamp(sum.upper, 0.0, 1.0);
+  sum.value = std::clamp(sum.value, sum.lower, sum.upper);
+}
+
+// All columns are patches of turned copies of faces, and of copies of fronts in the planes of overlaps. The factor to
+// the backs is the sum of those to the `whole` first columns, plus, for each overlap, that to `both` minus that to
+// `fronts`; the difference is 0 for a patch that sees nothing of `turned`.
+Targets::Added with_backs(const Scene& scene, std::size_t& whole) {
+  // Planes in which backs and fronts overlap in part: the backs, the union of both, and the fronts.
+  struct Overlap {
+    PatchId turned, both, fronts;
+  };
   const ClosedSurfaces surfaces(scene, ClosedSurfaces::Edges::kCutAtJunctions);
   const auto is_of_closed = [&](std::uint32_t piece) { return belongs_to(surfaces, piece); };
-  SceneCopy copy(scene);
-  std::array<std::optional<Selection>, 2> backs;  // of closed surfaces, and others
-  std::vector<SceneWithBacks::Overlap> overlaps;
+  Targets::Added added{SceneCopy(scene)};
+  std::array<std::optional<PatchId>, 2> backs;  // of closed surfaces, which hide them from most, and others
+  std::vector<Overlap> overlaps;
   std::size_t planes = 0;  // with an overlap
-  const auto turn = [&](const Selection& patch, std::uint32_t back) {
-    copy.add_face(patch, reversed_corners_of(scene, scene.pieces()[back]));
+  const auto turn = [&](PatchId patch, std::uint32_t back) {
+    added.copy.add_face(patch, reversed_corners_of(scene, scene.pieces()[back]));
   };
   for (SharedPlane& plane : planes_of(scene)) {
     if (!sort_out(scene, plane)) {
       if (plane.backs.empty()) continue;
       // All of a plane go to one patch, where they count once if they overlap.
       const bool are_of_closed = std::ranges::all_of(plane.backs, is_of_closed);
-      std::optional<Selection>& patch = backs[are_of_closed ? 0 : 1];
-      if (!patch) patch = copy.add_patch(are_of_closed ? "backs of closed surfaces" : "backs");
+      std::optional<PatchId>& patch = backs[are_of_closed ? 0 : 1];
+      if (!patch) patch = added.copy.add_patch(are_of_closed ? "backs of closed surfaces" : "backs");
       for (const std::uint32_t back : plane.backs) turn(*patch, back);
       continue;
     }
     if (overlaps.size() < kMostOverlaps) {
       const std::string number = std::to_string(overlaps.size());
-      overlaps.push_back({copy.add_patch("backs on fronts " + number), copy.add_patch("backs and fronts " + number),
-                          copy.add_patch("fronts " + number)});
+      overlaps.push_back({added.copy.add_patch("backs on fronts " + number),
+                          added.copy.add_patch("backs and fronts " + number),
+                          added.copy.add_patch("fronts " + number)});
     }
     const auto& [turned, both, fronts] = overlaps[planes++ % kMostOverlaps];
     for (const std::uint32_t back : plane.backs) {
@@ -134,24 +214,166 @@ SceneWithBacks with_backs(const Scene& scene) {
       turn(both, back);
     }
     for (const std::uint32_t front : plane.fronts) {
-      copy.add_face(both, corners_of(scene, scene.pieces()[front]));
-      copy.add_face(fronts, corners_of(scene, scene.pieces()[front]));
+      added.copy.add_face(both, corners_of(scene, scene.pieces()[front]));
+      added.copy.add_face(fronts, corners_of(scene, scene.pieces()[front]));
     }
   }
-  SceneWithBacks result{copy.take(), {}, std::move(overlaps)};
-  for (const std::optional<Selection>& patch : backs) {
-    if (patch) result.whole.push_back(*patch);
+  for (const std::optional<PatchId>& patch : backs) {
+    if (patch) added.patches.push_back(*patch);
   }
-  return result;
+  whole = added.patches.size();
+  for (const auto& [turned, both, fronts] : overlaps) {
+    added.patches.insert(added.patches.end(), {turned, both, fronts});
+  }
+  added.kinds.assign(added.patches.size(), Columns::kBacks);
+  return added;
 }
 
-SceneWithSides with_sides(const Scene& scene) {
+struct Sight {
+  const Piece* piece;
+  kernel::PlaneThrough plane;
+};
+
+std::vector<Sight> sights_of(const Scene& scene, const Selection& selection) {
+  std::vector<Sight> sights;
+  const auto vertex = [&](std::uint32_t v) -> const Vec3& { return scene.vertices()[v]; };
+  for (const FaceId face : scene.faces_of(selection)) {
+    for (const Piece& piece : scene.pieces_of(face)) {
+      sights.push_back({&piece, {vertex(piece.frame[0]), vertex(piece.frame[1]), vertex(piece.frame[2])}});
+    }
+  }
+  return sights;
+}
+
+// False if all of `to` lies behind the plane of `from`, or in it.
+bool reaches_before(const Scene& scene, const Sight& from, const Sight& to) {
+  return std::ranges::any_of(scene.corners(*to.piece),
+                             [&](std::uint32_t v) { return from.plane.side_of(scene.vertices()[v]) > 0; });
+}
+
+}  // namespace
+
+BackFactors::BackFactors(const Scene& scene, std::span<const Selection> from, const ViewFactorOptions& options)
+    : accuracy_(options.accuracy), targets_(with_backs(scene, whole_), from, options), area_(find_area()) {}
+
+double BackFactors::find_area() const {
+  const view_factors::Pairs& pairs = targets_.pairs();
+  double area = 0.0;
+  std::size_t column = 0;
+  for (; column < whole_; ++column) area += pairs.area_to(column);
+  for (; column < targets_.to().size(); column += 3) {
+    area += std::max(0.0, pairs.area_to(column + 1) - pairs.area_to(column + 2));
+  }
+  return area;
+}
+
+// Of the columns that the row may see, those that its factor is made of.
+std::vector<BackFactors::Term> BackFactors::terms_of(std::size_t row) const {
+  std::vector<Term> terms;
+  std::size_t column = 0;
+  for (; column < whole_; ++column) {
+    if (targets_.pairs().may_see(row, column)) terms.push_back({column, false});
+  }
+  for (; column < targets_.to().size(); column += 3) {
+    if (targets_.pairs().may_see(row, column)) terms.insert(terms.end(), {{column + 1, false}, {column + 2, true}});
+  }
+  return terms;
+}
+
+// No entry is the transpose of another: the patches of the rows are not among the columns. The terms have equal shares
+// of the accuracy, how wide they are or not: if that decided, a smaller accuracy could yield a wider sum.
+ViewFactor BackFactors::of_row(std::size_t row) const {
+  const std::vector<Term> terms = terms_of(row);
+  const double finer = terms.size() > 1 ? kOfRoundings * static_cast<double>(terms.size()) : 1.0;
+  ViewFactor sum;
+  for (const auto& [column, is_subtracted] : terms) {
+    const ViewFactor f = targets_.factor(row, column, finer);
+    is_subtracted ? subtract(sum, f) : add(sum, f);
+  }
+  clamp(sum);
+  sum.accurate = sum.upper - sum.lower <= accuracy_;
+  sum.area_to = area_;
+  return sum;
+}
+
+// A point of a piece sees the front of another only if each reaches before the plane of the other. The backs are fronts
+// of the copy that is made for them, where closed surfaces may hide them, too.
+bool BackFactors::may_see_some(std::size_t row) const {
+  const Scene& scene = targets_.scene();
+  const std::vector<Sight> own = sights_of(scene, targets_.from()[row]);
+  for (std::size_t column = 0; column < targets_.to().size(); column += column < whole_ ? 1 : 3) {
+    if (!targets_.pairs().may_see(row, column)) continue;
+    for (const Sight& back : sights_of(scene, targets_.to()[column])) {
+      const auto may_see = [&](const Sight& one) {
+        return reaches_before(scene, one, back) && reaches_before(scene, back, one);
+      };
+      if (std::ranges::any_of(own, may_see)) return true;
+    }
+  }
+  return false;
+}
+
+ProvedZeros proved_zeros(const Scene& scene, std::span<const Selection> from) {
+  const BackFactors backs(scene, from, {});
+  ProvedZeros zeros;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    kernel::poll();
+    zeros.back.push_back(!backs.may_see_some(i));
+    zeros.open.push_back(backs.is_enclosed(i));
+  }
+  return zeros;
+}
+
+bool have_fronts_in_common(const Scene& scene) {
+  const auto patch_of = [&](std::uint32_t piece) { return scene.face(scene.pieces()[piece].face).patch; };
+  for (const visibility::SourcePlane& plane : visibility::group_by_plane(scene, faces_with_area(scene))) {
+    for (std::size_t i = 0; i < plane.pieces.size(); ++i) {
+      kernel::poll();
+      for (std::size_t j = 0; j < i; ++j) {
+        const std::uint32_t a = plane.pieces[i], b = plane.pieces[j];
+        if (patch_of(a) != patch_of(b) && overlap(scene, scene.pieces()[a], scene.pieces()[b])) return true;
+      }
+    }
+  }
+  return false;
+}
+
+// --- Open ---
+
+namespace {
+
+constexpr std::size_t kMostPieces = 4096;  // of more, the rest is hardly known soon
+constexpr double kLittle = 0.45;           // of a view that may be the faces', by a rough bound
+
+// Of a row of which this share of the area is not buried, and sees this of the faces.
+ViewFactor rest_of(const ViewFactor& faces, const kernel::Disc& exposed) {
+  ViewFactor rest = faces;
+  rest.area_to = 0.0;
+  const bool is_whole = exposed.centre == 1.0 && exposed.radius == 0.0;
+  const double most = is_whole ? 1.0 : std::min(1.0, upper_end(exposed));
+  const double least = is_whole ? 1.0 : std::max(0.0, lower_end(exposed));
+  if (faces.claim == Claim::kZero) {
+    rest.claim = Claim::kCertified;
+    rest.lower = least;
+    rest.upper = most;
+  } else {
+    rest.lower = std::max(0.0, kernel::below(least - faces.upper));
+    rest.upper = std::min(1.0, kernel::above(most - faces.lower));
+  }
+  rest.value = std::clamp(exposed.centre - faces.value, rest.lower, rest.upper);
+  return rest;
+}
+
+// All that hides anything, from either side, as copies of fronts and turned copies. What overlaps in a plane counts
+// once. Columns: all of it; and, if there are closed surfaces, their backs, which they hide from most, and all other
+// sides. None if all faces are transparent.
+Targets::Added with_sides(const Scene& scene) {
   const ClosedSurfaces surfaces(scene, ClosedSurfaces::Edges::kCutAtJunctions);
-  SceneCopy copy(scene);
-  std::optional<Selection> all, closed_backs, others;
-  const auto add = [&](std::optional<Selection>& patch, const char* name, const std::vector<std::uint32_t>& corners) {
-    if (!patch) patch = copy.add_patch(name);
-    copy.add_face(*patch, corners);
+  Targets::Added added{SceneCopy(scene)};
+  std::optional<PatchId> all, closed_backs, others;
+  const auto add = [&](std::optional<PatchId>& patch, const char* name, const std::vector<std::uint32_t>& corners) {
+    if (!patch) patch = added.copy.add_patch(name);
+    added.copy.add_face(*patch, corners);
   };
   for (std::uint32_t p = 0; p < scene.pieces().size(); ++p) {
     const Piece& piece = scene.pieces()[p];
@@ -163,10 +385,11 @@ SceneWithSides with_sides(const Scene& scene) {
     add(others, "other sides", front);
     belongs_to(surfaces, p) ? add(closed_backs, "backs of closed surfaces", back) : add(others, "other sides", back);
   }
-  return {copy.take(), all, closed_backs, others};
+  if (all) added.patches.push_back(*all);
+  if (closed_backs) added.patches.insert(added.patches.end(), {*closed_backs, *others});
+  added.kinds.assign(added.patches.size(), Columns::kBacks);
+  return added;
 }
-
-namespace {
 
 // Of points on a line: whether the third does not lie beyond the second, as seen from the first.
 bool runs_back(const Vec3& first, const Vec3& second, const Vec3& third) {
@@ -222,24 +445,25 @@ bool lies_before(const Scene& scene, const ClosedSurface::Rim& rim) {
   });
 }
 
-std::vector<SceneWithSky::Window> add_windows(const Scene& scene, SceneCopy& copy) {
-  std::vector<SceneWithSky::Window> windows;
-  const ClosedSurfaces surfaces(scene, ClosedSurfaces::Edges::kCutAtJunctions);
-  for (std::size_t s = 0; s < surfaces.surfaces().size(); ++s) {
-    const std::optional<ClosedSurface::Rim>& rim = surfaces.surfaces()[s].rim;
+// Within a surface with a convex hole in a plane, with nothing of the scene beyond the plane, what is open is what is
+// seen of a face that fills the hole and looks at the surface.
+void add_windows(const Scene& scene, Targets::Added& added, std::vector<std::size_t>& surfaces) {
+  const ClosedSurfaces closed(scene, ClosedSurfaces::Edges::kCutAtJunctions);
+  for (std::size_t s = 0; s < closed.surfaces().size(); ++s) {
+    const std::optional<ClosedSurface::Rim>& rim = closed.surfaces()[s].rim;
     if (!rim || !lies_before(scene, *rim)) continue;
     const std::vector<std::uint32_t> ring = convex_hole(scene, *rim);
     if (ring.empty()) continue;
-    windows.push_back({s, copy.add_patch("window " + std::to_string(s))});
-    copy.add_face(windows.back().patch, ring);
+    surfaces.push_back(s);
+    added.patches.push_back(added.copy.add_patch("window " + std::to_string(s)));
+    added.kinds.push_back(Columns::kWindows);
+    added.copy.add_face(added.patches.back(), ring);
   }
-  return windows;
 }
 
-}  // namespace
-
-// Not much larger than the scene, so that bounds of roundings, which go by the largest coordinate, stay as small.
-SceneWithSky with_sky(const Scene& scene) {
+// A cube around everything, whose fronts look inward, and the windows of these surfaces. Not much larger than the
+// scene, so that bounds of roundings, which go by the largest coordinate, stay as small.
+Targets::Added with_sky(const Scene& scene, std::vector<std::size_t>& surfaces_of_windows) {
   constexpr double kWider = 1.25;  // roundings do not matter
   std::array<double, 3> centre{};
   double half = 0.0;
@@ -249,8 +473,11 @@ SceneWithSky with_sky(const Scene& scene) {
     centre[axis] = 0.5 * at(low) + 0.5 * at(high);
     half = std::max(half, 0.5 * at(high) - 0.5 * at(low));
   }
-  SceneCopy copy(scene);
-  const Selection sky = copy.add_patch("sky");
+  Targets::Added added{SceneCopy(scene)};
+  SceneCopy& copy = added.copy;
+  const PatchId sky = copy.add_patch("sky");
+  added.patches.push_back(sky);
+  added.kinds.push_back(Columns::kSurroundings);
   std::array<std::uint32_t, 8> corners{};  // the bits of their number tell on which sides they lie
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const auto at = [&](std::size_t axis) {
@@ -268,77 +495,78 @@ SceneWithSky with_sky(const Scene& scene) {
     copy.add_face(sky, {corners[0], corners[one], corners[one + two], corners[two]});
     copy.add_face(sky, {corners[far], corners[far + two], corners[far + one + two], corners[far + one]});
   }
-  std::vector<SceneWithSky::Window> windows = add_windows(scene, copy);
-  return {copy.take(), sky, std::move(windows)};
-}
-
-namespace {
-
-struct Sight {
-  const Piece* piece;
-  kernel::PlaneThrough plane;
-};
-
-std::vector<Sight> sights_of(const Scene& scene, const Selection& selection) {
-  std::vector<Sight> sights;
-  const auto vertex = [&](std::uint32_t v) -> const Vec3& { return scene.vertices()[v]; };
-  for (const FaceId face : scene.faces_of(selection)) {
-    for (const Piece& piece : scene.pieces_of(face)) {
-      sights.push_back({&piece, {vertex(piece.frame[0]), vertex(piece.frame[1]), vertex(piece.frame[2])}});
-    }
-  }
-  return sights;
-}
-
-// False if all of `to` lies behind the plane of `from`, or in it.
-bool reaches_before(const Scene& scene, const Sight& from, const Sight& to) {
-  return std::ranges::any_of(scene.corners(*to.piece),
-                             [&](std::uint32_t v) { return from.plane.side_of(scene.vertices()[v]) > 0; });
+  add_windows(scene, added, surfaces_of_windows);
+  return added;
 }
 
 }  // namespace
 
-// A point of a piece sees the front of another only if each reaches before the plane of the other. The backs are fronts
-// of the scene that is made for them, where closed surfaces may hide them, too.
-ProvedZeros proved_zeros(const Scene& scene, std::span<const Selection> from) {
-  const SceneWithBacks made = with_backs(scene);
-  std::vector<Selection> columns = made.whole;
-  for (const SceneWithBacks::Overlap& overlap : made.overlaps) columns.push_back(overlap.turned);
-  std::vector<std::vector<Sight>> backs;
-  for (const Selection& column : columns) backs.push_back(sights_of(made.scene, column));
-  const view_factors::Pairs rows(made.scene, of_any_scene(from), columns, {}, view_factors::Columns::kBacks);
-  ProvedZeros zeros;
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    kernel::poll();
-    const std::vector<Sight> own = sights_of(made.scene, {from[i].patch, from[i].face});
-    const auto may_see = [&](const Sight& a, const Sight& b) {
-      return reaches_before(made.scene, a, b) && reaches_before(made.scene, b, a);
-    };
-    const auto sees_some_of = [&](std::size_t column) {
-      return rows.may_see(i, column) && std::ranges::any_of(own, [&](const Sight& one) {
-               return std::ranges::any_of(backs[column], [&](const Sight& back) { return may_see(one, back); });
-             });
-    };
-    bool sees = false;
-    for (std::size_t column = 0; column < columns.size() && !sees; ++column) sees = sees_some_of(column);
-    zeros.back.push_back(!sees);
-    zeros.open.push_back(rows.is_enclosed(i));
-  }
-  return zeros;
+OpenFactors::OpenFactors(const Scene& scene, std::span<const Selection> from, const ViewFactorOptions& options,
+                         const view_factors::Pairs& pairs)
+    : scene_(scene),
+      from_(from.begin(), from.end()),
+      options_(options),
+      pairs_(pairs),
+      targets_(with_sky(scene, surfaces_), from, options) {}
+
+const Targets& OpenFactors::sides() const {
+  std::call_once(sides_once_, [&] { sides_ = std::make_unique<const Targets>(with_sides(scene_), from_, options_); });
+  return *sides_;
 }
 
-bool have_fronts_in_common(const Scene& scene) {
-  const auto patch_of = [&](std::uint32_t piece) { return scene.face(scene.pieces()[piece].face).patch; };
-  for (const visibility::SourcePlane& plane : visibility::group_by_plane(scene, faces_with_area(scene))) {
-    for (std::size_t i = 0; i < plane.pieces.size(); ++i) {
-      kernel::poll();
-      for (std::size_t j = 0; j < i; ++j) {
-        const std::uint32_t a = plane.pieces[i], b = plane.pieces[j];
-        if (patch_of(a) != patch_of(b) && overlap(scene, scene.pieces()[a], scene.pieces()[b])) return true;
-      }
-    }
+ViewFactor OpenFactors::of_row(std::size_t row) const {
+  if (pairs_.is_enclosed(row)) return {};
+  for (std::size_t w = 0; w < surfaces_.size(); ++w) {
+    if (pairs_.is_within(row, surfaces_[w])) return targets_.factor(row, w + 1);
   }
-  return false;
+  const double most = pairs_.open_at_most(row);
+  if (most <= options_.accuracy) return {.upper = most, .claim = Claim::kCertified};
+  ViewFactor open = computed(row);
+  for (double* bound : {&open.upper, &open.lower, &open.value}) *bound = std::min(*bound, most);
+  return open;
+}
+
+ViewFactor OpenFactors::computed(std::size_t row) const {
+  enum Column : std::size_t { kAll, kClosedBacks, kOthers };
+  if (scene_.pieces().size() > kMostPieces) return targets_.factor(row, 0);
+  // The fewest sides that are all that the row sees.
+  const bool any = !sides().to().empty();
+  const Column column = sides().to().size() > 1 && !sides().pairs().may_see(row, kClosedBacks) ? kOthers : kAll;
+  // About what the row would see if nothing were hidden.
+  if (any && sides().pairs().unhidden(row, column) >= kLittle) return targets_.factor(row, 0);
+  const ViewFactor rest = rest_of(any ? sides().factor(row, column) : ViewFactor{}, pairs_.exposed_share(row));
+  if (rest.accurate) return rest;
+  const ViewFactor to_sky = targets_.factor(row, 0);
+  return to_sky.upper - to_sky.lower < rest.upper - rest.lower ? to_sky : rest;
+}
+
+// --- Twins ---
+
+namespace {
+
+std::string name_of_back(const Scene& scene, const Selection& selection) {
+  std::string name = scene.name_of(selection) + ' ' + std::string(kBack);
+  if (has_patch(scene, name)) {
+    text::refuse("the back of " + scene.name_of(selection) + " cannot be a patch of its own",
+                 "there is a patch named " + text::in_quotes(name) + " already", "rename that patch");
+  }
+  return name;
+}
+
+}  // namespace
+
+Scene with_two_sided(const Scene& scene, std::span<const Selection> selections) {
+  const kernel::StandardArithmetic arithmetic;
+  SceneCopy copy(scene);
+  std::set<FaceId> doubled;
+  for (const Selection& selection : selections) {
+    std::vector<FaceId> faces = scene.faces_of(selection);
+    std::erase_if(faces, [&](FaceId face) { return !doubled.insert(face).second; });
+    if (faces.empty()) continue;
+    const PatchId back = copy.add_patch(name_of_back(scene, selection));
+    for (const FaceId face : faces) copy.add_twin(back, scene.face(face));
+  }
+  return copy.take();
 }
 
 }  // namespace exactff::matrix

@@ -13,7 +13,7 @@
 #include "files/parallel.h"
 #include "kernel/float_environment.h"
 #include "matrix/columns.h"
-#include "matrix/row_facts.h"
+#include "matrix/rows.h"
 #include "radiosity/system.h"
 #include "table/rows.h"
 #include "text/phrases.h"
@@ -48,23 +48,6 @@ BoundedValue emissivity_of(double rho) {
   return {eps, below(eps), above(eps)};
 }
 
-double sum_of_values(std::span<const Entry> row, const Numbers& x) {
-  double sum = 0.0;
-  for (const Entry& entry : row) sum += entry.value * x[entry.column];
-  return sum;
-}
-
-// The irradiances F y of radiosities.
-std::vector<BoundedValue> irradiances(const System& system, const SolutionBounds& y) {
-  std::vector<BoundedValue> all;
-  for (std::size_t i = 0; i < system.factors.size(); ++i) {
-    const auto row = system.factors.row(i);
-    all.push_back(
-        {y.value.empty() ? kNoNumber : sum_of_values(row, y.value), sum_below(row, y.lower), sum_above(row, y.upper)});
-  }
-  return all;
-}
-
 // Column j; empty: there is no bound.
 std::vector<BoundedValue> column_of(const System& all, std::size_t j) {
   System system = all;
@@ -72,32 +55,21 @@ std::vector<BoundedValue> column_of(const System& all, std::size_t j) {
   system.emissions[j] = 1.0;
   const SolutionBounds y = bounds_of(system);
   if (y.upper.empty()) return {};
-  std::vector<BoundedValue> column = irradiances(system, y);
+  std::vector<BoundedValue> column = irradiances(system.factors, y);
   const BoundedValue eps = emissivity_of(system.reflectances[j]);
   for (BoundedValue& b : column) b = within(b * eps, 1.0);
   return column;
 }
 
 std::vector<BoundedValue> column_of_rest(const System& all, const std::vector<ViewFactor>& rest) {
-  System system = all;
-  SolutionBounds t;
-  for (double ViewFactor::*bound : {&ViewFactor::lower, &ViewFactor::value, &ViewFactor::upper}) {
-    system.emissions.clear();
-    for (std::size_t i = 0; i < rest.size(); ++i) {
-      const double o = rest[i].*bound, rho = all.reflectances[i];
-      system.emissions.push_back(bound == &ViewFactor::upper   ? times_above(rho, o)
-                                 : bound == &ViewFactor::lower ? times_below(rho, o)
-                                                               : rho * o);
-    }
-    SolutionBounds found = bounds_of(system);
-    if (found.upper.empty()) return {};
-    (bound == &ViewFactor::upper   ? t.upper
-     : bound == &ViewFactor::lower ? t.lower
-                                   : t.value) = std::move(bound == &ViewFactor::upper   ? found.upper
-                                                          : bound == &ViewFactor::lower ? found.lower
-                                                                                        : found.value);
+  std::vector<BoundedValue> emissions;
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    const double rho = all.reflectances[i];
+    emissions.push_back({rho * rest[i].value, times_below(rho, rest[i].lower), times_above(rho, rest[i].upper)});
   }
-  std::vector<BoundedValue> column = irradiances(all, t);
+  const SolutionBounds t = bounds_of(all, emissions);
+  if (t.upper.empty()) return {};
+  std::vector<BoundedValue> column = irradiances(all.factors, t);
   for (std::size_t i = 0; i < column.size(); ++i) {
     const ViewFactor& o = rest[i];
     BoundedValue& b = column[i];
@@ -126,12 +98,11 @@ void set_conductors(Exchange::Channel& channel, const std::vector<BoundedValue>&
       channel.conductors[i * n + j] = channel.conductors[j * n + i] = within(both);
     }
   }
-  for (std::size_t i = 0; i < channel.back.size(); ++i) {
-    channel.conductors_to_back.push_back(within(emitting[i] * channel.back[i]));
-  }
-  for (std::size_t i = 0; i < channel.open.size(); ++i) {
-    channel.conductors_to_open.push_back(within(emitting[i] * channel.open[i]));
-  }
+  const auto add_rest = [&](const std::vector<BoundedValue>& factors, std::vector<BoundedValue>& conductors) {
+    for (std::size_t i = 0; i < factors.size(); ++i) conductors.push_back(within(emitting[i] * factors[i]));
+  };
+  add_rest(channel.back, channel.conductors_to_back);
+  add_rest(channel.open, channel.conductors_to_open);
 }
 
 Exchange::Channel channel_of(const Scene& scene, const matrix::Matrix& matrix, const std::vector<double>& areas,
@@ -206,9 +177,7 @@ Exchange exchange(const Scene& scene, const matrix::Matrix& given, int threads, 
   const Exposed exposed(given);
   const matrix::Matrix& matrix = exposed.matrix();
   for (std::size_t i = 0; i < result.patches.size(); ++i) result.areas.push_back(matrix.factors.at(i, 0).area_from);
-  for (const auto* factors : {&matrix.factors.entries, &matrix.back, &matrix.open}) {
-    for (const ViewFactor& f : *factors) result.claim = matrix::weaker(result.claim, f.claim);
-  }
+  result.claim = matrix::claim_of(matrix, true);
   std::vector<Numbers> reflectances;
   for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
     System system = system_of(scene, matrix.factors, c);

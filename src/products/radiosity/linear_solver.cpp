@@ -1,8 +1,9 @@
-#include "radiosity/linear_solver.h"
-
+// The only place that calls Eigen.
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
 #include <cstdint>
+
+#include "radiosity/system.h"
 
 namespace exactff::radiosity {
 namespace {

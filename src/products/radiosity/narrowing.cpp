@@ -5,12 +5,17 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
+#include <string>
+#include <string_view>
 #include <utility>
 
+#include "files/parallel.h"
 #include "kernel/float_environment.h"
-#include "matrix/again.h"
+#include "matrix/columns.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
+#include "view_factors/pairs.h"
 
 namespace exactff::radiosity {
 namespace {
@@ -52,12 +57,6 @@ std::optional<Goal> goal_of(System system, double width) {
   return std::nullopt;
 }
 
-double weighted_sum(std::span<const Entry> row, const Numbers& x) {
-  double sum = 0.0;
-  for (const Entry& entry : row) sum += entry.value * x[entry.column];
-  return sum;
-}
-
 // Step 1: what each row may add, and what it adds.
 struct Row {
   double may_add = 0.0, adds = 0.0;
@@ -76,7 +75,7 @@ std::vector<Row> rows_of(const Goal& goal, double slack) {
     double change = 0.0;
     Numbers next;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      const double from_others = system.reflectances[i] * weighted_sum(system.factors.row(i), d);
+      const double from_others = system.reflectances[i] * sum_of_values(system.factors.row(i), d);
       rows[i].may_add = std::max(most - from_others, 0.0);
       next.push_back(std::min(most, rows[i].adds + from_others));
       change = std::max(change, d[i] - next[i]);
@@ -85,6 +84,38 @@ std::vector<Row> rows_of(const Goal& goal, double slack) {
     if (change <= 1e-3 * most) break;
   }
   return rows;
+}
+
+// Step 2: the widths of these entries, as shares of what they are, so that they add at most `most`. Work > 0.
+struct Share {
+  double added = 0.0, work = 1.0;
+};
+Numbers shares_left(const std::vector<Share>& shares, double most) {
+  std::vector<std::size_t> order(shares.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
+    const double x = shares[a].added * shares[b].work, y = shares[b].added * shares[a].work;
+    return x > y || (x == y && a < b);
+  });
+  double rest = 0.0, roots = 0.0;
+  for (const Share& share : shares) rest += share.added;
+  Numbers left(shares.size(), 1.0);
+  if (rest <= most) return left;
+  double limit = 0.0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const Share& share = shares[order[k]];
+    rest -= share.added;
+    roots += std::sqrt(share.work * share.added);
+    limit = (most - rest) / roots;
+    const bool is_last = k + 1 == order.size();
+    if (limit > 0.0 && (is_last || shares[order[k + 1]].added <= limit * limit * shares[order[k + 1]].work)) {
+      break;
+    }
+  }
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    left[k] = std::min(1.0, limit * std::sqrt(shares[k].work / shares[k].added));
+  }
+  return left;
 }
 
 class Plan {
@@ -179,35 +210,110 @@ std::map<std::uint8_t, std::vector<std::size_t>> entries_of(const std::vector<Go
   return {};
 }
 
-}  // namespace
+// --- Entries again ---
 
-Numbers shares_left(const std::vector<Share>& shares, double most) {
-  std::vector<std::size_t> order(shares.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
-    const double x = shares[a].added * shares[b].work, y = shares[b].added * shares[a].work;
-    return x > y || (x == y && a < b);
-  });
-  double rest = 0.0, roots = 0.0;
-  for (const Share& share : shares) rest += share.added;
-  Numbers left(shares.size(), 1.0);
-  if (rest <= most) return left;
-  double limit = 0.0;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const Share& share = shares[order[k]];
-    rest -= share.added;
-    roots += std::sqrt(share.work * share.added);
-    limit = (most - rest) / roots;
-    const bool is_last = k + 1 == order.size();
-    if (limit > 0.0 && (is_last || shares[order[k + 1]].added <= limit * limit * shares[order[k + 1]].work)) {
-      break;
+// Entries of a matrix that are computed again, with a smaller accuracy. Those that the journal holds, if there is one,
+// are not computed, and others are added as soon as they are known.
+struct Again {
+  ViewFactorOptions factors;
+  std::vector<std::size_t> entries;  // row by row, of the factors between all of from = to
+  const Hooks& hooks;
+  jobs::Journal* journal = nullptr;
+  std::size_t done = 0, total = 0;  // of all rounds, for progress
+  int threads = 0;
+};
+
+// The patches of these entries, each once, and the entries among them.
+struct Part {
+  Part(const Again& again, const matrix::Factors& factors) {
+    std::set<std::size_t> needed;
+    for (const std::size_t entry : again.entries) {
+      needed.insert(entry / factors.to.size());
+      needed.insert(entry % factors.to.size());
     }
+    rows.assign(needed.begin(), needed.end());
+    for (const std::size_t row : rows) patches.push_back(factors.from[row]);
   }
-  for (std::size_t k = 0; k < shares.size(); ++k) {
-    left[k] = std::min(1.0, limit * std::sqrt(shares[k].work / shares[k].added));
+
+  [[nodiscard]] std::size_t place_of(std::size_t row) const {
+    return static_cast<std::size_t>(std::ranges::lower_bound(rows, row) - rows.begin());
   }
-  return left;
+  [[nodiscard]] std::size_t entry_in_part(std::size_t entry, std::size_t columns) const {
+    return place_of(entry / columns) * rows.size() + place_of(entry % columns);
+  }
+  [[nodiscard]] std::size_t entry_in_all(std::size_t entry, std::size_t columns) const {
+    return rows[entry / rows.size()] * columns + rows[entry % rows.size()];
+  }
+
+  std::vector<std::size_t> rows;
+  std::vector<Selection> patches;
+};
+
+// All that a pair depends on.
+std::string name_of(const Scene& scene, const ViewFactorOptions& options, std::size_t entry) {
+  return scene.hash() + ':' + text::shortest(options.accuracy) + ':' + std::to_string(options.budget) +
+         (options.certify ? ":certify" : "") + (options.both_directions ? ":both" : "") +
+         (options.sample_crowds ? "" : ":cells") + ':' + std::to_string(entry);
 }
+
+// One line for each entry. Returns false, and takes nothing, if the text has other lines.
+template <class Put>
+bool take_kept(std::string_view text, const std::vector<std::size_t>& entries, const Put& put) {
+  std::vector<matrix::Entry> lines(entries.size());
+  for (matrix::Entry& line : lines) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos || !matrix::columns().read_csv(text.substr(0, end), line)) return false;
+    text.remove_prefix(end + 1);
+  }
+  for (std::size_t k = 0; k < entries.size(); ++k) put(entries[k], lines[k]);
+  return text.empty();
+}
+
+// A pair counts for all of its entries.
+Hooks shifted(const Again& with) {
+  const auto show = [&with](const Progress& progress) {
+    Progress shown = progress;
+    shown.done = with.done + progress.done * with.entries.size() / std::max<std::size_t>(progress.total, 1);
+    shown.total = with.total;
+    if (with.hooks.progress) with.hooks.progress(shown);
+  };
+  return {.progress = show, .cancelled = with.hooks.cancelled};
+}
+
+// Replaces the entries by those that view_factor gives with the options, and those that follow from them (transposes)
+// as well. Calls take(entry), of all that are replaced, from any thread.
+void compute(const Scene& scene, const Again& again, matrix::Factors& factors,
+             const std::function<void(std::size_t)>& take) {
+  if (again.entries.empty()) return;
+  const kernel::StandardArithmetic arithmetic;
+  const std::size_t width = factors.to.size();
+  const Part part(again, factors);
+  const view_factors::Pairs pairs(scene, part.patches, part.patches, again.factors);
+  std::set<std::size_t> unique;
+  for (const std::size_t entry : again.entries) unique.insert(pairs.pair_of(part.entry_in_part(entry, width)));
+  const std::vector<std::size_t> wanted(unique.begin(), unique.end());
+  const auto put = [&](std::size_t entry, const ViewFactor& f) {
+    const std::size_t place = part.entry_in_all(entry, width);
+    factors.entries[place] = f;
+    take(place);
+  };
+  files::parallel_for(wanted.size(), again.threads, "view factors again", shifted(again), [&](std::size_t i) {
+    const std::vector<std::size_t>& entries = pairs.entries_of(wanted[i]);
+    const std::string name = name_of(scene, again.factors, part.entry_in_all(entries.front(), width));
+    const auto kept = again.journal != nullptr ? again.journal->find(name) : std::nullopt;
+    if (kept && take_kept(*kept, entries, put)) return;
+    std::string text;
+    matrix::Entry line;
+    pairs.compute(wanted[i], [&](std::size_t entry, const ViewFactor& f) {
+      put(entry, f);
+      static_cast<ViewFactor&>(line) = f;
+      matrix::columns().append_csv(line, text);
+    });
+    if (again.journal != nullptr) again.journal->add(name, text);
+  });
+}
+
+}  // namespace
 
 void require_width(double width) {
   if (width > 0.0 && std::isfinite(width)) return;
@@ -226,17 +332,16 @@ Narrowed narrow(const Scene& scene, matrix::Matrix& matrix, const Options& optio
   for (int round = 0; round < kMostRounds; ++round) {
     const auto entries = entries_of(goals_of(scene, matrix, *options.width), matrix.factors, accuracy, result.halvings);
     if (entries.empty()) break;
-    matrix::AgainHooks with{hooks, journal, 0, 0, options.threads};
-    for (const auto& [halvings, of_accuracy] : entries) with.total += of_accuracy.size();
+    Again again{options.factors, {}, hooks, journal, 0, 0, options.threads};
+    for (const auto& [halvings, of_accuracy] : entries) again.total += of_accuracy.size();
     // The most accurate first: transposes of these need not be computed less accurately before.
     for (auto level = entries.rbegin(); level != entries.rend(); ++level) {
       const std::uint8_t halvings = level->first;
-      matrix::Again again{options.factors, level->second};
       again.factors.accuracy = std::ldexp(accuracy, -halvings);
+      again.entries = level->second;
       std::erase_if(again.entries, [&](std::size_t entry) { return result.halvings[entry] >= halvings; });
-      matrix::compute_again(scene, again, with, matrix.factors,
-                            [&](std::size_t entry) { result.halvings[entry] = halvings; });
-      with.done += level->second.size();
+      compute(scene, again, matrix.factors, [&](std::size_t entry) { result.halvings[entry] = halvings; });
+      again.done += level->second.size();
     }
   }
   result.entries = static_cast<std::size_t>(std::ranges::count_if(result.halvings, [](auto h) { return h > 0; }));

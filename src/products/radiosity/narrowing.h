@@ -38,10 +38,4 @@ Narrowed narrow(const Scene& scene, matrix::Matrix& matrix, const Options& optio
 [[nodiscard]] Solution solve_within(const Scene& scene, matrix::Matrix& matrix, const Options& options,
                                     jobs::Journal* journal, const Hooks& hooks);
 
-// Step 2: the widths of these entries, as shares of what they are, so that they add at most `most`. Work > 0.
-struct Share {
-  double added = 0.0, work = 1.0;
-};
-[[nodiscard]] Numbers shares_left(const std::vector<Share>& shares, double most);
-
 }  // namespace exactff::radiosity

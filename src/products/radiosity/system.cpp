@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <utility>
 
 #include "kernel/float_environment.h"
-#include "radiosity/linear_solver.h"
 
 namespace exactff::radiosity {
 namespace {
@@ -15,6 +16,27 @@ using kernel::below;
 
 constexpr int kMostSteps = 60;      // each doubles what is added
 constexpr double kRounding = 1e-9;  // of an estimate
+
+// The sum over a row of F x for L <= F <= U, x >= 0, rounded outward: L x and U x. A sum of zeros is 0.
+double sum_below(std::span<const Entry> row, const Numbers& x) {
+  double sum = 0.0;
+  for (const Entry& entry : row) {
+    if (entry.lower == 0.0 || x[entry.column] == 0.0) continue;
+    const double term = std::max(0.0, below(entry.lower * x[entry.column]));
+    sum = sum == 0.0 ? term : below(sum + term);
+  }
+  return sum;
+}
+
+double sum_above(std::span<const Entry> row, const Numbers& x) {
+  double sum = 0.0;
+  for (const Entry& entry : row) {
+    if (entry.upper == 0.0 || x[entry.column] == 0.0) continue;
+    const double term = above(entry.upper * x[entry.column]);
+    sum = sum == 0.0 ? term : above(sum + term);
+  }
+  return sum;
+}
 
 // rho_i times a sum. Zero is exact.
 double reflected_above(const System& system, std::size_t i, const Numbers& x) {
@@ -45,26 +67,6 @@ bool holds_everywhere(const System& system, const Holds& holds) {
 }
 
 }  // namespace
-
-double sum_below(std::span<const Entry> row, const Numbers& x) {
-  double sum = 0.0;
-  for (const Entry& entry : row) {
-    if (entry.lower == 0.0 || x[entry.column] == 0.0) continue;
-    const double term = std::max(0.0, below(entry.lower * x[entry.column]));
-    sum = sum == 0.0 ? term : below(sum + term);
-  }
-  return sum;
-}
-
-double sum_above(std::span<const Entry> row, const Numbers& x) {
-  double sum = 0.0;
-  for (const Entry& entry : row) {
-    if (entry.upper == 0.0 || x[entry.column] == 0.0) continue;
-    const double term = above(entry.upper * x[entry.column]);
-    sum = sum == 0.0 ? term : above(sum + term);
-  }
-  return sum;
-}
 
 bool is_supersolution(const System& system, const Numbers& w) {
   return holds_everywhere(system, [&](std::size_t i) {
@@ -197,6 +199,12 @@ Numbers spread(const Reached& part, const Numbers& of_part, std::size_t size) {
 
 }  // namespace
 
+double sum_of_values(std::span<const Entry> row, const Numbers& x) {
+  double sum = 0.0;
+  for (const Entry& entry : row) sum += entry.value * x[entry.column];
+  return sum;
+}
+
 SolutionBounds bounds_of(const System& system) {
   const std::size_t size = system.factors.size();
   const Reached part = reached_part(system);
@@ -212,6 +220,29 @@ SolutionBounds bounds_of(const System& system) {
   result.upper = spread(part, after_a_bounce(part.system, w, radiosity_above), size);
   result.lower = spread(part, after_a_bounce(part.system, v, radiosity_below), size);
   return result;
+}
+
+SolutionBounds bounds_of(System system, std::span<const BoundedValue> emissions) {
+  const auto of_ends = [&](double BoundedValue::*end) {
+    system.emissions.clear();
+    for (const BoundedValue& one : emissions) system.emissions.push_back(one.*end);
+    return bounds_of(system);
+  };
+  SolutionBounds low = of_ends(&BoundedValue::lower), middle = of_ends(&BoundedValue::value),
+                 high = of_ends(&BoundedValue::upper);
+  if (low.upper.empty() || high.upper.empty()) return {};
+  return {std::move(middle.value), std::move(low.lower), std::move(high.upper)};
+}
+
+std::vector<BoundedValue> irradiances(const Factors& factors, const SolutionBounds& radiosities) {
+  const auto& [value, lower, upper] = radiosities;
+  std::vector<BoundedValue> all;
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    const auto row = factors.row(i);
+    const double estimate = value.empty() ? std::numeric_limits<double>::quiet_NaN() : sum_of_values(row, value);
+    all.push_back({estimate, sum_below(row, lower), sum_above(row, upper)});
+  }
+  return all;
 }
 
 bool may_have_no_solution(const System& system) {

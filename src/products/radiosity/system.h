@@ -33,6 +33,7 @@
 
 #include "exactff/error.h"
 #include "exactff/matrix.h"
+#include "exactff/radiosity.h"
 #include "exactff/scene.h"
 
 namespace exactff::radiosity {
@@ -75,9 +76,8 @@ struct System {
 [[nodiscard]] bool is_subsolution(const System& system, const Numbers& v);    // v >= 0, (I - rho L) v <= E
 [[nodiscard]] bool is_contracting(const System& system, const Numbers& z);    // z > 0, (I - rho U) z > 0
 
-// The sum over a row of F x for L <= F <= U, x >= 0, rounded outward. A sum of zeros is 0.
-[[nodiscard]] double sum_below(std::span<const Entry> row, const Numbers& x);  // L x
-[[nodiscard]] double sum_above(std::span<const Entry> row, const Numbers& x);  // U x
+// Over a row, of the estimates, in plain doubles.
+[[nodiscard]] double sum_of_values(std::span<const Entry> row, const Numbers& x);
 
 // The matrix of what is exposed: means over the parts of patches that are not buried, and their areas. A patch that is
 // buried as a whole sees nothing, and has no area. Refers to the given matrix if nothing is buried.
@@ -98,11 +98,19 @@ class Exposed {
 // Of a channel (kChannelNames).
 [[nodiscard]] System system_of(const Scene& scene, const matrix::Factors& factors, std::size_t channel);
 
+// (I - rho F) x = b, approximately, where F takes one of the three numbers of each entry. Empty if no x of finite
+// numbers with a small residual is found. Nothing that is proved depends on the result.
+[[nodiscard]] Numbers approximate_solution(const System& system, double Entry::*number, const Numbers& b);
+
 struct SolutionBounds {
   Numbers value;         // of the system with the entries' values, an estimate; empty: the solver found none
   Numbers lower, upper;  // of B; empty: z, or a double that is large enough, was not found
 };
 [[nodiscard]] SolutionBounds bounds_of(const System& system);
+// The same where each emission, which is not negative, lies within bounds: B grows with it.
+[[nodiscard]] SolutionBounds bounds_of(System system, std::span<const BoundedValue> emissions);
+// F B of these; without estimates, their values are NaN.
+[[nodiscard]] std::vector<BoundedValue> irradiances(const Factors& factors, const SolutionBounds& radiosities);
 // Some reflectance is 1 or more. In a closed room of reflectance 1 there is no B that an estimate could be near; where
 // there is no upper bound, this may be such a room.
 [[nodiscard]] bool may_have_no_solution(const System& system);

@@ -9,8 +9,9 @@
 #include "exactff/radiosity.h"
 #include "kernel/float_environment.h"
 #include "matrix/columns.h"
-#include "matrix/row_facts.h"
+#include "matrix/rows.h"
 #include "radiosity/system.h"
+#include "scene/selections.h"
 #include "table/rows.h"
 #include "text/csv_dialect.h"
 #include "text/phrases.h"
@@ -56,34 +57,16 @@ BoundedValue temperature_of(const BoundedValue& emission) {
 }
 
 // What arrives if the patches emit `emission`, which is not negative. Empty: there is no bound.
-std::vector<BoundedValue> arriving(const System& all, const std::vector<BoundedValue>& emission) {
-  System system = all;
-  std::array<Numbers, 3> found;
-  constexpr std::array<double BoundedValue::*, 3> kEnds{&BoundedValue::lower, &BoundedValue::value,
-                                                        &BoundedValue::upper};
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t i = 0; i < emission.size(); ++i) system.emissions[i] = std::max(0.0, emission[i].*kEnds[k]);
-    SolutionBounds bounds = bounds_of(system);
-    found[k] = std::move(k == 0 ? bounds.lower : k == 1 ? bounds.value : bounds.upper);
-    if (found[k].empty()) return {};
+std::vector<BoundedValue> arriving(const System& system, std::vector<BoundedValue> emission) {
+  for (BoundedValue& one : emission) {
+    for (double* end : {&one.value, &one.lower, &one.upper}) *end = std::max(0.0, *end);
   }
-  std::vector<BoundedValue> result;
-  for (std::size_t i = 0; i < emission.size(); ++i) {
-    const auto row = system.factors.row(i);
-    double value = 0.0;
-    for (const Entry& entry : row) value += entry.value * found[1][entry.column];
-    result.push_back({value, sum_below(row, found[0]), sum_above(row, found[2])});
-  }
-  return result;
+  const SolutionBounds radiosities = bounds_of(system, emission);
+  if (radiosities.value.empty() || radiosities.upper.empty()) return {};
+  return irradiances(system.factors, radiosities);
 }
 
 bool is_grey(const Rgb& kd) { return kd.r == kd.g && kd.g == kd.b; }
-
-double area_of(const Scene& scene, const Selection& patch) {
-  double area = 0.0;
-  for (const FaceId face : scene.faces_of(patch)) area += scene.face(face).area;
-  return area;
-}
 
 std::string name_of(const Scene& scene, const Selection& patch) { return text::in_quotes(scene.name_of(patch)); }
 
@@ -127,9 +110,7 @@ Temperatures temperatures(const Scene& scene, const matrix::Matrix& given, const
   const Exposed exposed(given);
   const matrix::Matrix& matrix = exposed.matrix();
   System system = system_of(scene, matrix.factors, 0);
-  for (const auto* factors : {&matrix.factors.entries, &matrix.back, &matrix.open}) {
-    for (const ViewFactor& f : *factors) result.claim = matrix::weaker(result.claim, f.claim);
-  }
+  result.claim = matrix::claim_of(matrix, true);
   const auto bounded = [](const ViewFactor& f) { return BoundedValue{f.value, f.lower, f.upper}; };
   const double square_metres = metres(scene.unit()) * metres(scene.unit());
   constexpr double kRounded = matrix::kRoundedAreas + 0x1p-50;  // with the unit and its square

@@ -70,19 +70,26 @@ Camera camera_from(const Extents& box, const Vec3& direction, const Camera& like
   return camera;
 }
 
-// The share of a test picture that shows fronts. Between views that show as much, the number of patches decides.
-double fronts_seen(const Scene& scene, const Camera& camera) {
-  const View view(camera, {kTestSide, kTestSide});
-  int fronts = 0;
-  std::set<PatchId> patches;
-  for (int row = 0; row < kTestSide; ++row) {
-    for (int column = 0; column < kTestSide; ++column) {
+// Calls take(hit) for each pixel of a test picture that shows a front.
+template <class Take>
+void for_each_front(const Scene& scene, const Camera& camera, const Size& size, const Take& take) {
+  const View view(camera, size);
+  for (int row = 0; row < size.height; ++row) {
+    for (int column = 0; column < size.width; ++column) {
       const auto hit = first_hit(scene, view.ray(column + 0.5, row + 0.5));
-      if (!hit || hit->back) continue;
-      ++fronts;
-      patches.insert(scene.face(hit->face).patch);
+      if (hit && !hit->back) take(*hit);
     }
   }
+}
+
+// The share of a test picture that shows fronts. Between views that show as much, the number of patches decides.
+double fronts_seen(const Scene& scene, const Camera& camera) {
+  int fronts = 0;
+  std::set<PatchId> patches;
+  for_each_front(scene, camera, {kTestSide, kTestSide}, [&](const Hit& hit) {
+    ++fronts;
+    patches.insert(scene.face(hit.face).patch);
+  });
   constexpr double kOfPatches = 1e-3;
   const double share = static_cast<double>(fronts) / (kTestSide * kTestSide);
   return share * (1.0 + kOfPatches * static_cast<double>(patches.size()));
@@ -156,22 +163,17 @@ Camera camera_within(const Extents& box, const Corner& corner, const Camera& lik
 // What a test picture shows of a room: 0 unless most of it shows fronts, as it does wherever the room is closed. Views
 // with a lamp come first. Then many patches count, far away: furniture right before the camera hides the rest.
 double room_seen(const Scene& scene, const Camera& camera, const Size& size) {
-  const View view(camera, size);
   int fronts = 0;
   double distances = 0.0;
   bool lamp = false;
   std::set<PatchId> patches;
-  for (int row = 0; row < size.height; ++row) {
-    for (int column = 0; column < size.width; ++column) {
-      const auto hit = first_hit(scene, view.ray(column + 0.5, row + 0.5));
-      if (!hit || hit->back) continue;
-      ++fronts;
-      const Face& face = scene.face(hit->face);
-      patches.insert(face.patch);
-      lamp = lamp || scene.material(face.material).emits();
-      distances += kernel::distance(hit->point, camera.eye);
-    }
-  }
+  for_each_front(scene, camera, size, [&](const Hit& hit) {
+    ++fronts;
+    const Face& face = scene.face(hit.face);
+    patches.insert(face.patch);
+    lamp = lamp || scene.material(face.material).emits();
+    distances += kernel::distance(hit.point, camera.eye);
+  });
   if (2 * fronts < size.width * size.height) return 0.0;
   constexpr double kOfLamp = 1e3;
   return (lamp ? kOfLamp : 1.0) * static_cast<double>(patches.size()) * distances;
@@ -288,26 +290,23 @@ std::vector<Problem> problems_of_numbers(const Camera& camera, const Size& size)
   return problems;
 }
 
-// Empty, or the problem with the directions of a camera whose numbers are finite.
-std::optional<Problem> problem_of_directions(const Camera& camera) {
+// Of a camera whose numbers are finite.
+void require_directions(const Camera& camera) {
   const Vec3 along = difference(camera.look, camera.eye);
   if (along == Vec3{}) {
-    return Problem{.what = "the camera's eye and the point that it looks at are the same",
-                   .why = "the line of sight has no direction",
-                   .suggestion = "move one of them"};
+    text::refuse("the camera's eye and the point that it looks at are the same", "the line of sight has no direction",
+                 "move one of them");
   }
   if (!is_finite(along)) {
-    return Problem{.what = "the camera's eye and the point that it looks at are too far apart",
-                   .why = "their difference is not a double",
-                   .suggestion = "look at a point nearer to the eye, in the same direction"};
+    text::refuse("the camera's eye and the point that it looks at are too far apart",
+                 "their difference is not a double", "look at a point nearer to the eye, in the same direction");
   }
   constexpr double kParallel = 1e-9;
   if (camera.up == Vec3{} || !(kernel::max_norm(cross(unit(along), unit(camera.up))) > kParallel)) {
-    return Problem{.what = "the camera's up vector is zero or parallel to the line of sight",
-                   .why = "nothing then says which side of the picture is up",
-                   .suggestion = "give another direction, for example along another axis"};
+    text::refuse("the camera's up vector is zero or parallel to the line of sight",
+                 "nothing then says which side of the picture is up",
+                 "give another direction, for example along another axis");
   }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -315,10 +314,8 @@ std::optional<Problem> problem_of_directions(const Camera& camera) {
 View::View(const Camera& camera, const Size& size) : camera_(camera), size_(size) {
   const kernel::StandardArithmetic arithmetic;
   std::vector<Problem> problems = problems_of_numbers(camera, size);
-  if (problems.empty()) {
-    if (auto problem = problem_of_directions(camera)) problems.push_back(std::move(*problem));
-  }
   if (!problems.empty()) throw InputError(std::move(problems));
+  require_directions(camera);
   forward_ = unit(difference(camera.look, camera.eye));
   right_ = unit(cross(forward_, unit(camera.up)));
   up_ = cross(right_, forward_);

@@ -47,7 +47,8 @@ class Outline {
       std::uint32_t in_row = 0;
       for (int column = 0; column < size.width; ++column) {
         in_row += errors.is_wrong[count(row, size.width) + static_cast<std::size_t>(column)] ? 1 : 0;
-        before(column + 1, row + 1) = before(column + 1, row) + in_row;
+        wrong_before_[count(row + 1, size.width + 1) + static_cast<std::size_t>(column + 1)] =
+            before(column + 1, row) + in_row;
       }
     }
   }
@@ -61,9 +62,6 @@ class Outline {
  private:
   static std::size_t count(int a, int b) { return static_cast<std::size_t>(a) * static_cast<std::size_t>(b); }
   // The number of wrong pixels above and to the left of this corner.
-  std::uint32_t& before(int column, int row) {
-    return wrong_before_[count(row, size_.width + 1) + static_cast<std::size_t>(column)];
-  }
   [[nodiscard]] std::uint32_t before(int column, int row) const {
     return wrong_before_[count(row, size_.width + 1) + static_cast<std::size_t>(column)];
   }
@@ -181,6 +179,11 @@ void require_same_size(const Picture& judged, const Picture& truth) {
   }
 }
 
+std::string method_of(const Picture& picture) {
+  const auto found = std::ranges::find(picture.metadata, "method", &std::pair<std::string, std::string>::first);
+  return found == picture.metadata.end() ? "the other picture" : found->second;
+}
+
 }  // namespace
 
 Errors errors_of(const Picture& judged, const Picture& truth) {
@@ -202,15 +205,6 @@ Errors errors_of(const Picture& judged, const Picture& truth) {
   set_statistics(errors, std::move(magnitudes), std::move(relative));
   return errors;
 }
-
-namespace {
-
-std::string method_of(const Picture& picture) {
-  const auto found = std::ranges::find(picture.metadata, "method", &std::pair<std::string, std::string>::first);
-  return found == picture.metadata.end() ? "the other picture" : found->second;
-}
-
-}  // namespace
 
 Picture difference(const Picture& judged, const Picture& truth) {
   const kernel::StandardArithmetic arithmetic;

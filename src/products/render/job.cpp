@@ -6,6 +6,7 @@
 #include "jobs/kept_work.h"
 #include "kernel/float_environment.h"
 #include "scene/scene.h"
+#include "scene/selections.h"
 #include "text/escape.h"
 #include "text/names.h"
 #include "text/phrases.h"
@@ -168,10 +169,15 @@ std::string words_of(const Vec3& v) {
   return text::shortest(v.x) + ' ' + text::shortest(v.y) + ' ' + text::shortest(v.z);
 }
 
-std::string names_of(const Scene& scene, const std::vector<Selection>& selections) {
-  std::string names;
-  for (const Selection& one : selections) names += (names.empty() ? "" : " + ") + text::printable(scene.name_of(one));
-  return names;
+std::string words_of(const Scene& scene, const std::vector<Selection>& selections) {
+  return text::printable(text::joined(names_of(scene, selections), " + "));
+}
+
+std::string words_of_measure(const Measure& measure) {
+  std::string words(to_string(measure.kind));
+  if (measure.sphere) words += " of a sphere";
+  if (measure.kind != MeasureKind::kOvercast) return words;
+  return words + ", up " + words_of(measure.up);
 }
 
 }  // namespace
@@ -220,9 +226,9 @@ Metadata Job::metadata() const {
     }
   }
   if (const auto flipped = scene.flipped(); !flipped.empty())
-    metadata.emplace_back("flipped", names_of(scene, flipped));
+    metadata.emplace_back("flipped", words_of(scene, flipped));
   if (const auto clear = scene.transparent(); !clear.empty()) {
-    metadata.emplace_back("transparent", names_of(scene, clear));
+    metadata.emplace_back("transparent", words_of(scene, clear));
   }
   return metadata;
 }
@@ -238,15 +244,6 @@ whole_view::LightFormula Job::formula(FaceId face, bool back) const {
   return whole_view::light_formula(*request_.scene, std::span(&face, 1),
                                    back ? whole_view::FaceSide::kBack : whole_view::FaceSide::kFront, request_.quantity,
                                    request_.ke);
-}
-
-// --- Identity ---
-
-std::string words_of_measure(const Measure& measure) {
-  std::string words(to_string(measure.kind));
-  if (measure.sphere) words += " of a sphere";
-  if (measure.kind != MeasureKind::kOvercast) return words;
-  return words + ", up " + words_of(measure.up);
 }
 
 std::string identity_of(const Request& request, const std::optional<methods::Choice>& against) {

@@ -1,5 +1,4 @@
-// A checked request, with everything precomputed that depends on the scene and the sources alone; and the values of
-// single points.
+// A checked request, with everything precomputed that depends on the scene and the sources alone.
 #pragma once
 
 #include <memory>
@@ -72,40 +71,10 @@ class Job {
   std::vector<const methods::PreparedSource*> source_pointers_;
 };
 
-// The numbers of one point, in the order of Job.
-struct Sample {
-  std::vector<double> numbers;
-  bool certified = true;
-};
-
-// Computes single points. One for each thread.
-class Painter {
- public:
-  explicit Painter(const Job& job);
-
-  // Column and row as for View::ray, of a lightmap those of a texel's centre.
-  void look_at(double column, double row, Sample& sample);
-
- private:
-  [[nodiscard]] whole_view::Channels light_at(const Receiver& receiver, const whole_view::LightFormula& formula);
-  [[nodiscard]] whole_view::Channels light_by_method(const Receiver& receiver, const whole_view::LightFormula& formula);
-  void add_slope(const Hit* hit, bool dark, Sample& sample);
-  void add_layers(const Vec3& eye, const Hit* hit, bool dark, Sample& sample) const;
-
-  const Job& job_;
-  ExactOptions options_;
-  whole_view::Light::Results results_;
-  FormFactor factor_;
-  std::unique_ptr<methods::Evaluator> evaluator_;
-  std::vector<methods::Estimate> estimates_;
-};
-
 // --- Which picture unfinished tiles belong to ---
 
 // With a hash of the texture coordinates. Those of a set that does not exist throw std::invalid_argument.
 [[nodiscard]] std::string words_of(const Scene& scene, const Lightmap& lightmap);
-// "overcast, up 0 0 1".
-[[nodiscard]] std::string words_of_measure(const Measure& measure);
 
 // Everything that the tiles of a picture, and those of the method that it is compared with, depend on.
 [[nodiscard]] std::string identity_of(const Request& request, const std::optional<methods::Choice>& against);

@@ -25,21 +25,13 @@ struct Tile {
   int left = 0, top = 0, width = 0, height = 0;
 };
 
-class Tiles {
- public:
-  explicit Tiles(const Size& size)
-      : size_(size), tiles_{(size.width + kTileSide - 1) / kTileSide, (size.height + kTileSide - 1) / kTileSide} {}
+int tiles_along(int side) { return (side + kTileSide - 1) / kTileSide; }
 
-  [[nodiscard]] std::size_t count() const { return pixels_of(tiles_); }
-  [[nodiscard]] Tile operator[](std::size_t index) const {
-    const auto columns = static_cast<std::size_t>(tiles_.width);
-    const int left = static_cast<int>(index % columns) * kTileSide, top = static_cast<int>(index / columns) * kTileSide;
-    return {left, top, std::min(kTileSide, size_.width - left), std::min(kTileSide, size_.height - top)};
-  }
-
- private:
-  Size size_, tiles_;
-};
+Tile tile_at(const Size& size, std::size_t index) {
+  const auto columns = static_cast<std::size_t>(tiles_along(size.width));
+  const int left = static_cast<int>(index % columns) * kTileSide, top = static_cast<int>(index / columns) * kTileSide;
+  return {left, top, std::min(kTileSide, size.width - left), std::min(kTileSide, size.height - top)};
+}
 
 // The result of a tile: the numbers of its pixels one after the other, as Numbers lists them.
 struct TileResult {
@@ -58,10 +50,34 @@ double mean(std::span<const double> values) {
   return kernel::nearest_double(kernel::Rational(sum / static_cast<unsigned long>(values.size())));
 }
 
-// Computes pixels in one thread.
-class Brush {
+constexpr double kNothingMet = std::numeric_limits<double>::quiet_NaN();
+
+// Without any light: what is proved to be black, or nothing at all.
+whole_view::Channels dark(double value) {
+  const whole_view::CertifiedNumber number{value, value, value, true};
+  return {number, number, number};
+}
+
+bool is_zero(const Rgb& colour) { return colour == Rgb{}; }
+
+Vec3 unit_length(const Vec3& v) { return kernel::unit_unscaled(kernel::scaled(v, 1.0 / kernel::max_norm(v))); }
+
+double of_visible(const FormFactor& factor) {
+  return static_cast<double>(factor.visible_part.value_or(VisiblePart::kNothing));
+}
+
+// Computes single points, and pixels of them. One for each thread.
+class Painter {
  public:
-  explicit Brush(const Job& job) : job_(job), painter_(job) {}
+  explicit Painter(const Job& job) : job_(job) {
+    options_.engine = job.request().engine;
+    options_.visible_fraction = job.request().layers == Layers::kAll;
+    options_.measure = job.request().measure;
+    options_.gradient = job.request().shown == Shown::kSlope;
+    if (job.prepared() == nullptr) return;
+    evaluator_ = job.prepared()->configure(job.request().method->settings);
+    estimates_.resize(job.source_count());
+  }
 
   void paint(const Tile& tile, TileResult& result) {
     const double start = files::thread_seconds();
@@ -77,24 +93,19 @@ class Brush {
   void paint_pixel(int column, int row, TileResult& result) {
     const int n = job_.request().spp;
     if (n == 1) {
-      look(column + 0.5, row + 0.5, result);
-      result.numbers.insert(result.numbers.end(), sample_.numbers.begin(), sample_.numbers.end());
+      look_at(column + 0.5, row + 0.5, result);
+      result.numbers.insert(result.numbers.end(), numbers_.begin(), numbers_.end());
       return;
     }
     parts_.clear();
     for (int b = 0; b < n; ++b) {
       for (int a = 0; a < n; ++a) {
-        look(column + (a + 0.5) / n, row + (b + 0.5) / n, result);
-        parts_.push_back(sample_.numbers);
+        look_at(column + (a + 0.5) / n, row + (b + 0.5) / n, result);
+        parts_.push_back(numbers_);
       }
     }
     append_mean(result.numbers);
     append_lamps(result.numbers);
-  }
-
-  void look(double column, double row, TileResult& result) {
-    painter_.look_at(column, row, sample_);
-    if (!sample_.certified) ++result.not_certified;
   }
 
   // The bounds are means as well, moved outward by one double for the rounding.
@@ -124,39 +135,118 @@ class Brush {
     for (const double sum : lamps) numbers.push_back(sum / static_cast<double>(parts_.size()));
   }
 
+  // Column and row as for View::ray, of a lightmap those of a texel's centre. The numbers are in the order of Job.
+  void look_at(double column, double row, TileResult& result) {
+    const Request& request = job_.request();
+    const Atlas* atlas = job_.atlas();
+    const Ray ray = atlas != nullptr ? Ray{} : request.view.ray(column, row);
+    const std::optional<Hit> hit =
+        atlas != nullptr ? atlas->hit(static_cast<int>(column), static_cast<int>(row)) : first_hit(*request.scene, ray);
+    const bool black = !hit || (hit->back && request.sides == Sides::kFront);
+    Shows shows = !hit ? Shows::kNothing : black ? Shows::kBack : Shows::kFace;
+    if (request.shown == Shown::kSlope) {
+      numbers_.assign(1, static_cast<double>(shows));
+      return add_slope(hit ? &*hit : nullptr, black);
+    }
+    whole_view::Channels channels = dark(hit ? 0.0 : kNothingMet);
+    if (!black) {
+      const whole_view::LightFormula formula = job_.formula(hit->face, hit->back);
+      if (!is_zero(formula.emitted)) shows = Shows::kEmitter;
+      channels = light_at(receiver_at(*request.scene, *hit), formula);
+    }
+    numbers_.clear();
+    numbers_.push_back(static_cast<double>(shows));
+    for (const auto& channel : channels) numbers_.push_back(channel.value);
+    if (request.bounds == Bounds::kAll) {
+      for (const auto& channel : channels) numbers_.push_back(channel.lower);
+      for (const auto& channel : channels) numbers_.push_back(channel.upper);
+    }
+    if (!std::ranges::all_of(channels, &whole_view::CertifiedNumber::certified)) ++result.not_certified;
+    if (request.layers == Layers::kAll) add_layers(ray.origin, hit ? &*hit : nullptr, black);
+  }
+
+  [[nodiscard]] whole_view::Channels light_at(const Receiver& receiver, const whole_view::LightFormula& formula) {
+    if (evaluator_ != nullptr) return light_by_method(receiver, formula);
+    return job_.light_at(receiver, formula, options_, results_);
+  }
+
+  [[nodiscard]] whole_view::Channels light_by_method(const Receiver& receiver,
+                                                     const whole_view::LightFormula& formula) {
+    evaluator_->look_from(receiver);
+    evaluator_->form_factors(job_.prepared_sources(), estimates_);
+    Rgb received;
+    for (std::size_t s = 0; s < estimates_.size(); ++s) {
+      const double f = estimates_[s].form_factor;
+      const Rgb& weight = job_.weights()[s];
+      received = {received.r + weight.r * f, received.g + weight.g * f, received.b + weight.b * f};
+    }
+    const double factor = formula.pi_power == 0  ? 1.0
+                          : formula.pi_power > 0 ? std::numbers::pi
+                                                 : 1.0 / std::numbers::pi;
+    const auto channel = [&](double emitted, double reflectance, double arriving) {
+      const double value = factor * (emitted + reflectance * arriving);
+      return whole_view::CertifiedNumber{value, value, value, true};
+    };
+    return {channel(formula.emitted.r, formula.reflectance.r, received.r),
+            channel(formula.emitted.g, formula.reflectance.g, received.g),
+            channel(formula.emitted.b, formula.reflectance.b, received.b)};
+  }
+
+  // The length of the gradient along the surface, in three channels, its components, and whether there is none.
+  void add_slope(const Hit* hit, bool dark) {
+    if (hit == nullptr || dark) {
+      const double value = hit == nullptr ? kNothingMet : 0.0;
+      numbers_.insert(numbers_.end(), {value, value, value, 0.0, 0.0, 0.0, 0.0});
+      return;
+    }
+    const Receiver receiver = receiver_at(*job_.request().scene, *hit);
+    Vec3 gradient;
+    bool kink = false;
+    for (std::size_t s = 0; s < job_.source_count(); ++s) {
+      job_.factors().find_one(receiver, s, options_, factor_, results_.at);
+      const auto& [x, y, z] = factor_.gradient->position;
+      kink = kink || factor_.gradient->kink.has_value();
+      gradient = {gradient.x + x.value, gradient.y + y.value, gradient.z + z.value};
+    }
+    if (kink) gradient = {};
+    const Vec3 normal = unit_length(receiver.normal);
+    const double across = kernel::dot(gradient, normal);
+    const Vec3 along{gradient.x - across * normal.x, gradient.y - across * normal.y, gradient.z - across * normal.z};
+    const double slope = std::hypot(along.x, along.y, along.z);
+    numbers_.insert(numbers_.end(), {slope, slope, slope, along.x, along.y, along.z, kink ? 1.0 : 0.0});
+  }
+
+  void add_layers(const Vec3& eye, const Hit* hit, bool dark) {
+    for (std::size_t s = 0; s < job_.source_count(); ++s) {
+      if (dark) {
+        numbers_.insert(numbers_.end(), {0.0, 0.0, 0.0});
+      } else {
+        const FormFactor& factor = results_.at.factors[s];
+        numbers_.insert(numbers_.end(), {factor.value, of_visible(factor), factor.visible_fraction.value_or(0.0)});
+      }
+    }
+    if (hit == nullptr) {
+      numbers_.insert(numbers_.end(), job_.atlas() != nullptr ? 8 : 9, 0.0);
+      return;
+    }
+    const Scene& scene = *job_.request().scene;
+    const Receiver receiver = receiver_at(scene, *hit);
+    const Vec3 &point = receiver.point, normal = unit_length(receiver.normal);
+    numbers_.insert(numbers_.end(), {point.x, point.y, point.z, normal.x, normal.y, normal.z});
+    if (job_.atlas() == nullptr) numbers_.push_back(kernel::distance(point, eye));
+    for (const std::size_t id : {index_of(hit->face), index_of(scene.face(hit->face).patch)})
+      numbers_.push_back(static_cast<double>(id + 1));
+  }
+
   const Job& job_;
-  Painter painter_;
-  Sample sample_;
-  std::vector<std::vector<double>> parts_;
+  ExactOptions options_;
+  whole_view::Light::Results results_;
+  FormFactor factor_;
+  std::unique_ptr<methods::Evaluator> evaluator_;
+  std::vector<methods::Estimate> estimates_;
+  std::vector<double> numbers_;             // of the last point
+  std::vector<std::vector<double>> parts_;  // of a pixel
   std::vector<double> column_;
-};
-
-// Brushes that no thread uses at the moment.
-class Brushes {
- public:
-  explicit Brushes(const Job& job) : job_(job) {}
-
-  void paint(const Tile& tile, TileResult& result) {
-    std::unique_ptr<Brush> brush = take();
-    if (!brush) brush = std::make_unique<Brush>(job_);
-    brush->paint(tile, result);
-    const std::scoped_lock lock(mutex_);
-    free_.push_back(std::move(brush));
-  }
-
- private:
-  // Null if all are in use.
-  std::unique_ptr<Brush> take() {
-    const std::scoped_lock lock(mutex_);
-    if (free_.empty()) return nullptr;
-    std::unique_ptr<Brush> brush = std::move(free_.back());
-    free_.pop_back();
-    return brush;
-  }
-
-  const Job& job_;
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Brush>> free_;
 };
 
 Picture empty_picture(const Job& job) {
@@ -249,24 +339,28 @@ Picture render(const Request& request, const Hooks& hooks, jobs::Journal* journa
   const kernel::StandardArithmetic arithmetic;
   const Job job(request);
   Picture picture = empty_picture(job);
-  const Tiles tiles(picture.size);
   const jobs::KeptWork kept(journal, job.hash());
-  Brushes brushes(job);
   std::mutex mutex;
   const std::string stage = request.method ? "tiles, " + request.method->method->name : "tiles";
-  files::parallel_for(tiles.count(), request.threads, stage, hooks, [&](std::size_t index) {
+  const auto paint = [&](std::shared_ptr<Painter>& painter, std::size_t index) {
     TileResult result;
-    const Tile tile = tiles[index];
-    kept.get(
-        "tile-" + std::to_string(index), [&] { brushes.paint(tile, result); },
-        [&](auto& words) {
-          words.list_of(static_cast<std::size_t>(tile.width * tile.height) * job.numbers_per_pixel(), result.numbers);
-          words(result.not_certified, result.seconds);
-        });
+    const Tile tile = tile_at(picture.size, index);
+    const auto compute = [&] {
+      if (!painter) painter = std::make_shared<Painter>(job);
+      painter->paint(tile, result);
+    };
+    kept.get("tile-" + std::to_string(index), compute, [&](auto& words) {
+      words.list_of(static_cast<std::size_t>(tile.width * tile.height) * job.numbers_per_pixel(), result.numbers);
+      words(result.not_certified, result.seconds);
+    });
     place(tile, result, picture);
     const std::scoped_lock lock(mutex);
     picture.not_certified += result.not_certified;
     picture.seconds += result.seconds;
+  };
+  const std::size_t tiles = pixels_of({tiles_along(picture.size.width), tiles_along(picture.size.height)});
+  files::parallel_for({.count = tiles, .threads = request.threads, .stage = stage}, hooks, [&]() -> files::Body {
+    return [&, painter = std::shared_ptr<Painter>()](std::size_t index) mutable { paint(painter, index); };
   });
   if (request.radiosities && request.bounds == Bounds::kAll) add_bounds_as_layers(picture);
   if (const Atlas* atlas = job.atlas()) {
@@ -275,139 +369,6 @@ Picture render(const Request& request, const Hooks& hooks, jobs::Journal* journa
     add_margin(atlas->lightmap().margin, picture);
   }
   return picture;
-}
-
-// --- The values of single points ---
-
-namespace {
-
-constexpr double kNothingMet = std::numeric_limits<double>::quiet_NaN();
-
-// Without any light: what is proved to be black, or nothing at all.
-whole_view::Channels dark(double value) {
-  const whole_view::CertifiedNumber number{value, value, value, true};
-  return {number, number, number};
-}
-
-bool is_zero(const Rgb& colour) { return colour == Rgb{}; }
-
-Vec3 unit_length(const Vec3& v) { return kernel::unit_unscaled(kernel::scaled(v, 1.0 / kernel::max_norm(v))); }
-
-double of_visible(const FormFactor& factor) {
-  return static_cast<double>(factor.visible_part.value_or(VisiblePart::kNothing));
-}
-
-}  // namespace
-
-Painter::Painter(const Job& job) : job_(job) {
-  options_.engine = job.request().engine;
-  options_.visible_fraction = job.request().layers == Layers::kAll;
-  options_.measure = job.request().measure;
-  options_.gradient = job.request().shown == Shown::kSlope;
-  if (job.prepared() == nullptr) return;
-  evaluator_ = job.prepared()->configure(job.request().method->settings);
-  estimates_.resize(job.source_count());
-}
-
-void Painter::look_at(double column, double row, Sample& sample) {
-  const Request& request = job_.request();
-  const Atlas* atlas = job_.atlas();
-  const Ray ray = atlas != nullptr ? Ray{} : request.view.ray(column, row);
-  const std::optional<Hit> hit =
-      atlas != nullptr ? atlas->hit(static_cast<int>(column), static_cast<int>(row)) : first_hit(*request.scene, ray);
-  const bool black = !hit || (hit->back && request.sides == Sides::kFront);
-  Shows shows = !hit ? Shows::kNothing : black ? Shows::kBack : Shows::kFace;
-  if (request.shown == Shown::kSlope) {
-    sample.numbers.assign(1, static_cast<double>(shows));
-    return add_slope(hit ? &*hit : nullptr, black, sample);
-  }
-  whole_view::Channels channels = dark(hit ? 0.0 : kNothingMet);
-  if (!black) {
-    const whole_view::LightFormula formula = job_.formula(hit->face, hit->back);
-    if (!is_zero(formula.emitted)) shows = Shows::kEmitter;
-    channels = light_at(receiver_at(*request.scene, *hit), formula);
-  }
-  sample.numbers.clear();
-  sample.numbers.push_back(static_cast<double>(shows));
-  for (const auto& channel : channels) sample.numbers.push_back(channel.value);
-  if (request.bounds == Bounds::kAll) {
-    for (const auto& channel : channels) sample.numbers.push_back(channel.lower);
-    for (const auto& channel : channels) sample.numbers.push_back(channel.upper);
-  }
-  sample.certified = std::ranges::all_of(channels, &whole_view::CertifiedNumber::certified);
-  if (request.layers == Layers::kAll) add_layers(ray.origin, hit ? &*hit : nullptr, black, sample);
-}
-
-whole_view::Channels Painter::light_at(const Receiver& receiver, const whole_view::LightFormula& formula) {
-  if (evaluator_ != nullptr) return light_by_method(receiver, formula);
-  return job_.light_at(receiver, formula, options_, results_);
-}
-
-whole_view::Channels Painter::light_by_method(const Receiver& receiver, const whole_view::LightFormula& formula) {
-  evaluator_->look_from(receiver);
-  evaluator_->form_factors(job_.prepared_sources(), estimates_);
-  Rgb received;
-  for (std::size_t s = 0; s < estimates_.size(); ++s) {
-    const double f = estimates_[s].form_factor;
-    const Rgb& weight = job_.weights()[s];
-    received = {received.r + weight.r * f, received.g + weight.g * f, received.b + weight.b * f};
-  }
-  const double factor = formula.pi_power == 0 ? 1.0 : formula.pi_power > 0 ? std::numbers::pi : 1.0 / std::numbers::pi;
-  const auto channel = [&](double emitted, double reflectance, double arriving) {
-    const double value = factor * (emitted + reflectance * arriving);
-    return whole_view::CertifiedNumber{value, value, value, true};
-  };
-  return {channel(formula.emitted.r, formula.reflectance.r, received.r),
-          channel(formula.emitted.g, formula.reflectance.g, received.g),
-          channel(formula.emitted.b, formula.reflectance.b, received.b)};
-}
-
-// The length of the gradient along the surface, in three channels, its components, and whether there is none.
-void Painter::add_slope(const Hit* hit, bool dark, Sample& sample) {
-  sample.certified = true;
-  if (hit == nullptr || dark) {
-    const double value = hit == nullptr ? kNothingMet : 0.0;
-    sample.numbers.insert(sample.numbers.end(), {value, value, value, 0.0, 0.0, 0.0, 0.0});
-    return;
-  }
-  const Receiver receiver = receiver_at(*job_.request().scene, *hit);
-  Vec3 gradient;
-  bool kink = false;
-  for (std::size_t s = 0; s < job_.source_count(); ++s) {
-    job_.factors().find_one(receiver, s, options_, factor_, results_.at);
-    const auto& [x, y, z] = factor_.gradient->position;
-    kink = kink || factor_.gradient->kink.has_value();
-    gradient = {gradient.x + x.value, gradient.y + y.value, gradient.z + z.value};
-  }
-  if (kink) gradient = {};
-  const Vec3 normal = unit_length(receiver.normal);
-  const double across = kernel::dot(gradient, normal);
-  const Vec3 along{gradient.x - across * normal.x, gradient.y - across * normal.y, gradient.z - across * normal.z};
-  const double slope = std::hypot(along.x, along.y, along.z);
-  sample.numbers.insert(sample.numbers.end(), {slope, slope, slope, along.x, along.y, along.z, kink ? 1.0 : 0.0});
-}
-
-void Painter::add_layers(const Vec3& eye, const Hit* hit, bool dark, Sample& sample) const {
-  std::vector<double>& numbers = sample.numbers;
-  for (std::size_t s = 0; s < job_.source_count(); ++s) {
-    if (dark) {
-      numbers.insert(numbers.end(), {0.0, 0.0, 0.0});
-    } else {
-      const FormFactor& factor = results_.at.factors[s];
-      numbers.insert(numbers.end(), {factor.value, of_visible(factor), factor.visible_fraction.value_or(0.0)});
-    }
-  }
-  if (hit == nullptr) {
-    numbers.insert(numbers.end(), job_.atlas() != nullptr ? 8 : 9, 0.0);
-    return;
-  }
-  const Scene& scene = *job_.request().scene;
-  const Receiver receiver = receiver_at(scene, *hit);
-  const Vec3 &point = receiver.point, normal = unit_length(receiver.normal);
-  numbers.insert(numbers.end(), {point.x, point.y, point.z, normal.x, normal.y, normal.z});
-  if (job_.atlas() == nullptr) numbers.push_back(kernel::distance(point, eye));
-  for (const std::size_t id : {index_of(hit->face), index_of(scene.face(hit->face).patch)})
-    numbers.push_back(static_cast<double>(id + 1));
 }
 
 }  // namespace exactff::render

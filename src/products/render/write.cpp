@@ -72,20 +72,14 @@ std::uint32_t bits_of(double value, bool whole) {
 std::string exr_of(const Picture& picture) {
   const exr::Window window{0, 0, picture.size.width, picture.size.height};
   exr::Image image{window, window, {}, picture.metadata};
-  for (std::size_t c = 0; c < 3; ++c) {
-    exr::Numbers& channel = image.channels.emplace_back();
-    channel.name = "RGB"[c];
+  const auto add = [&](std::string name, bool whole, const double* values, std::size_t step) {
+    exr::Numbers& channel =
+        image.channels.emplace_back(exr::Numbers{std::move(name), whole ? exr::Kind::kWhole : exr::Kind::kFloat, {}});
     channel.bits.reserve(picture.pixels());
-    for (std::size_t i = 0; i < picture.pixels(); ++i)
-      channel.bits.push_back(bits_of(picture.values[3 * i + c], false));
-  }
-  for (const Layer& layer : picture.layers) {
-    exr::Numbers& channel = image.channels.emplace_back();
-    channel.name = layer.name;
-    channel.kind = layer.whole ? exr::Kind::kWhole : exr::Kind::kFloat;
-    channel.bits.reserve(picture.pixels());
-    for (const double value : layer.values) channel.bits.push_back(bits_of(value, layer.whole));
-  }
+    for (std::size_t i = 0; i < picture.pixels(); ++i) channel.bits.push_back(bits_of(values[step * i], whole));
+  };
+  for (std::size_t c = 0; c < 3; ++c) add(std::string(1, "RGB"[c]), false, &picture.values[c], 3);
+  for (const Layer& layer : picture.layers) add(layer.name, layer.whole, layer.values.data(), 1);
   return exr::exr_of(image);
 }
 

@@ -15,6 +15,7 @@
 #include "scene/closed_surfaces.h"
 #include "scene/contacts.h"
 #include "scene/scene.h"
+#include "scene/selections.h"
 #include "scene/solids.h"
 #include "slips/flip_trial.h"
 #include "slips/sight_lines.h"
@@ -29,51 +30,11 @@ using kernel::dot;
 
 namespace {
 
-Selection patch_of(const Scene& scene, std::uint32_t piece) {
-  return {scene.face(scene.pieces()[piece].face).patch, {}, scene.id()};
-}
-
-double area_of(const Scene& scene, const Selection& patch) {
-  double area = 0.0;
-  for (const FaceId face : scene.faces_of(patch)) area += scene.face(face).area;
-  return area;
-}
-
 using PatchPair = std::pair<PatchId, PatchId>;
 
 PatchPair patches_of(const Scene& scene, std::uint32_t a, std::uint32_t b) {
-  return {patch_of(scene, a).patch, patch_of(scene, b).patch};
+  return {patch_of(scene, a), patch_of(scene, b)};
 }
-
-}  // namespace
-
-std::vector<Contact> buried_parts(const Scene& scene) {
-  const kernel::StandardArithmetic arithmetic;
-  const auto& all = contacts(scene).all();
-  if (all.empty()) return {};
-  const SightLines sight(scene);
-  if (!sight.usable()) return {};
-  std::map<PatchPair, double> areas;
-  for (const auto& [piece, covers] : all) {
-    std::map<PatchPair, double> of_piece;
-    for (const std::uint32_t cover : covers) {
-      const std::optional<PieceOverlap> common = overlap_of(scene, sight, piece, cover);
-      if (common) of_piece[patches_of(scene, piece, cover)] += common->area;
-    }
-    const double most = piece_area(scene, sight, piece);
-    for (const auto& [pair, area] : of_piece) areas[pair] += std::min(area, most);
-  }
-  std::vector<Contact> result;
-  for (const auto& [pair, area] : areas) {
-    const Selection patch{pair.first, {}, scene.id()};
-    const double whole = area_of(scene, patch);
-    result.push_back({patch, {pair.second, {}, scene.id()}, std::min(area, whole), std::min(1.0, area / whole)});
-  }
-  std::ranges::stable_sort(result, std::greater{}, &Contact::area);
-  return result;
-}
-
-namespace {
 
 constexpr double kReach = 1e-6;                         // of the scene's diameter
 constexpr double kThick = 1e3;                          // a face is larger than what it misses by this factor
@@ -88,11 +49,6 @@ bool meet(const Box& a, const Box& b, double reach) {
 Box common_of(const Box& a, const Box& b) {
   return {{std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y), std::max(a.low.z, b.low.z)},
           {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y), std::min(a.high.z, b.high.z)}};
-}
-
-bool holds(const Box& outer, const Box& inner) {
-  const Box common = common_of(outer, inner);
-  return common.low == inner.low && common.high == inner.high;
 }
 
 // How a pair of patches touches.
@@ -121,7 +77,7 @@ class TouchFinder {
  private:
   using Touches = std::map<PatchPair, Touch>;
 
-  [[nodiscard]] Box box(std::uint32_t piece) const { return box_of(scene_, scene_.corners(scene_.pieces()[piece])); }
+  [[nodiscard]] Box box(std::uint32_t piece) const { return box_of(scene_, piece); }
   [[nodiscard]] double reach() const { return kReach * sight_.diameter(); }
   [[nodiscard]] const Vec3& vertex(std::uint32_t v) const { return scene_.vertices()[v]; }
   [[nodiscard]] kernel::PlaneThrough plane_of(std::uint32_t piece) const {
@@ -177,16 +133,15 @@ class TouchFinder {
     touch.apart = std::max(touch.apart, common.apart);
   }
 
-  [[nodiscard]] std::string quoted(PatchId patch) const {
-    return text::in_quotes(scene_.name_of(Selection{patch, {}, scene_.id()}), text::kShownName);
-  }
+  [[nodiscard]] std::string quoted(PatchId patch) const { return exactff::quoted(scene_, {patch, {}, scene_.id()}); }
   // "WORDS, WORDS and 3 more pairs"; `words(a, b, touch)`. The largest areas first.
   template <class Words>
-  [[nodiscard]] Finding finding_of(Kind kind, const Touches& touches, const Words& words) const {
+  [[nodiscard]] Finding finding_of(Kind kind, const Touches& touches, std::string why, std::string suggestion,
+                                   const Words& words) const {
     constexpr std::size_t kShown = 4;
     std::vector<std::pair<PatchPair, Touch>> largest(touches.begin(), touches.end());
     std::ranges::stable_sort(largest, std::greater{}, [](const auto& one) { return one.second.area; });
-    Finding finding{.kind = kind};
+    Finding finding{.kind = kind, .words = {.why = std::move(why), .suggestion = std::move(suggestion)}};
     for (std::size_t i = 0; i < largest.size(); ++i) {
       const PatchPair& pair = largest[i].first;
       const Selection patch{pair.first, {}, scene_.id()};
@@ -203,25 +158,22 @@ class TouchFinder {
 
   [[nodiscard]] Finding of_open_floors() const {
     Finding finding =
-        finding_of(Kind::kOpenFloor, open_floors_, [](const auto& solid, const auto& floor, const Touch& touch) {
-          return solid + " stands on " + floor + " (area " + text::short_number(touch.area) + ")";
-        });
+        finding_of(Kind::kOpenFloor, open_floors_, "a front that lies on it is not buried, and sees what is behind it",
+                   "to have it buried, close the room, or give what lies under it a back and sides, all fronts outside",
+                   [](const auto& solid, const auto& floor, const Touch& touch) {
+                     return solid + " stands on " + floor + " (area " + text::short_number(touch.area) + ")";
+                   });
     finding.words.what += ", which belongs to no closed surface";
-    finding.words.why = "a front that lies on it is not buried, and sees what is behind it";
-    finding.words.suggestion =
-        "to have it buried, close the room, or give what lies under it a back and sides, all fronts outside";
     return finding;
   }
   [[nodiscard]] Finding of_near_contacts() const {
-    Finding finding =
-        finding_of(Kind::kNearContact, near_, [](const auto& solid, const auto& other, const Touch& touch) {
-          return solid + " misses the plane of " + other + " by up to " + text::short_number(touch.apart, 1) +
-                 " (area " + text::short_number(touch.area) + ")";
-        });
-    finding.words.why =
-        "they almost touch, so nothing is buried there, and their fronts see each other or pass through";
-    finding.words.suggestion = "to have it buried, give the two faces corners in exactly one plane";
-    return finding;
+    return finding_of(Kind::kNearContact, near_,
+                      "they almost touch, so nothing is buried there, and their fronts see each other or pass through",
+                      "to have it buried, give the two faces corners in exactly one plane",
+                      [](const auto& solid, const auto& other, const Touch& touch) {
+                        return solid + " misses the plane of " + other + " by up to " +
+                               text::short_number(touch.apart, 1) + " (area " + text::short_number(touch.area) + ")";
+                      });
   }
 
   Finding of_missing_bottoms() {
@@ -232,15 +184,15 @@ class TouchFinder {
       const std::uint32_t of = surfaces.of_piece(piece);
       if (of == ClosedSurfaces::kNone || !known.insert(of).second) continue;
       const ClosedSurface& surface = surfaces.surfaces()[of];
-      if (surface.rim && !surface.turned_inside_out) find_floors(surface, patch_of(scene_, piece).patch, touches);
+      if (surface.rim && !surface.turned_inside_out) find_floors(surface, patch_of(scene_, piece), touches);
     }
-    Finding finding = finding_of(Kind::kNoBottom, touches, [](const auto& block, const auto& floor, const Touch&) {
-      return block + " stands on " + floor + " without a bottom";
-    });
-    finding.words.why =
-        "what is under it is not buried: it counts in the area of the floor, and sees the backs of the block";
-    finding.words.suggestion = "to have it buried, give the block a bottom whose front looks down";
-    return finding;
+    return finding_of(
+        Kind::kNoBottom, touches,
+        "what is under it is not buried: it counts in the area of the floor, and sees the backs of the block",
+        "to have it buried, give the block a bottom whose front looks down",
+        [](const auto& block, const auto& floor, const Touch&) {
+          return block + " stands on " + floor + " without a bottom";
+        });
   }
 
   // The faces that the surface stands on: they hold points just inside the hole.
@@ -255,7 +207,7 @@ class TouchFinder {
         if (!is_in(plane, piece) || dot(sight_.normal(piece), up) <= 0.0) return;
         const Vec3 before = kernel::along(point, up, 1.0);
         const Vec3 down{-2.0 * up.x, -2.0 * up.y, -2.0 * up.z};
-        if (sight_.meets(piece, before, down)) touches[{patch, patch_of(scene_, piece).patch}].area = 1.0;
+        if (sight_.meets(piece, before, down)) touches[{patch, patch_of(scene_, piece)}].area = 1.0;
       });
     }
   }
@@ -281,15 +233,13 @@ class TouchFinder {
                              kernel::distance(common.low, common.high);
                        });
     }
-    Finding finding =
-        finding_of(Kind::kOverlappingSolids, touches, [](const auto& one, const auto& other, const Touch&) {
+    return finding_of(
+        Kind::kOverlappingSolids, touches,
+        "closed solids share a part of space, and the faces inside it are not buried, but see the backs of the other "
+        "solid",
+        "move them apart, or cut off what lies inside", [](const auto& one, const auto& other, const Touch&) {
           return one == other ? "two solids of " + one + " overlap" : one + " and " + other + " overlap";
         });
-    finding.words.why =
-        "closed solids share a part of space, and the faces inside it are not buried, but see the backs of the other "
-        "solid";
-    finding.words.suggestion = "move them apart, or cut off what lies inside";
-    return finding;
   }
 
   [[nodiscard]] bool overlap(std::uint32_t a, std::uint32_t b) {
@@ -359,9 +309,8 @@ class TouchFinder {
 
   [[nodiscard]] bool is_inside(std::uint32_t solid, const Vec3& point) {
     const Solid& of = solids_.all()[solid];
-    if (triangles_ > kMostSolidAngles || !holds(of.box, {point, point})) return false;
-    constexpr double kHalfSphere = 6.283185307179586;
-    return std::abs(solid_angle_of(scene_, of.pieces, point, triangles_)) > kHalfSphere;
+    return triangles_ <= kMostSolidAngles && holds(of.box, {point, point}) &&
+           is_within(scene_, of.pieces, point, triangles_);
   }
 
   // Of one of them, with the other one in it.
@@ -384,6 +333,32 @@ class TouchFinder {
 };
 
 }  // namespace
+
+std::vector<Contact> buried_parts(const Scene& scene) {
+  const kernel::StandardArithmetic arithmetic;
+  const auto& all = contacts(scene).all();
+  if (all.empty()) return {};
+  const SightLines sight(scene);
+  if (!sight.usable()) return {};
+  std::map<PatchPair, double> areas;
+  for (const auto& [piece, covers] : all) {
+    std::map<PatchPair, double> of_piece;
+    for (const std::uint32_t cover : covers) {
+      const std::optional<PieceOverlap> common = overlap_of(scene, sight, piece, cover);
+      if (common) of_piece[patches_of(scene, piece, cover)] += common->area;
+    }
+    const double most = piece_area(scene, sight, piece);
+    for (const auto& [pair, area] : of_piece) areas[pair] += std::min(area, most);
+  }
+  std::vector<Contact> result;
+  for (const auto& [pair, area] : areas) {
+    const Selection patch{pair.first, {}, scene.id()};
+    const double whole = area_of(scene, patch);
+    result.push_back({patch, {pair.second, {}, scene.id()}, std::min(area, whole), std::min(1.0, area / whole)});
+  }
+  std::ranges::stable_sort(result, std::greater{}, &Contact::area);
+  return result;
+}
 
 std::vector<Finding> contact_findings(const Scene& scene) { return TouchFinder(scene).find(); }
 

@@ -117,64 +117,52 @@ std::vector<Selection> receiver_patches(const Scene& scene, std::span<const Rece
   return selections;
 }
 
-class Wording {
- public:
-  Wording(const Scene& scene, std::span<const Receiver> receivers, std::size_t looked_at)
-      : scene_(scene), receivers_(receivers), looked_at_(looked_at) {}
+std::string advice_to_turn(const Scene& scene, const std::string& names, std::span<const Selection> selections) {
+  const std::string advice = advice_to_flip(scene, selections);
+  return advice.empty() ? "choose other receivers or another source"
+                        : "if the other side of " + names + " is meant, " + advice;
+}
 
-  [[nodiscard]] Problem problem(const Selection& source, const Counts& counts) const {
-    const std::string name = listed(scene_, std::span(&source, 1));
-    std::vector<std::string> reasons, laws, advice;
-    const auto add = [&](std::size_t count, const char* one, const char* many, const std::string& rest,
-                         const std::string& law, const std::string& what_to_do) {
-      if (count == 0) return;
-      const std::string who = count < looked_at_ ? std::to_string(count) : count == 1 ? "it" : "they";
-      reasons.push_back(who + ' ' + (count == 1 ? one : many) + ' ' + rest);
-      if (!law.empty()) laws.push_back(law);
-      if (std::ranges::find(advice, what_to_do) == advice.end()) advice.push_back(what_to_do);
-    };
-    add(counts.on_it, "lies", "lie", "on the source", "", "choose other receivers or another source");
-    add(counts.behind, "is", "are", "behind the source", "a source emits only from its front",
-        advice_to_turn(name, std::span(&source, 1)));
-    add(counts.below, "looks", "look", "away from the source", "a receiver sees only what lies before it",
-        advice_to_turn_receivers());
-    add(counts.hidden, "lies", "lie", "just behind a face that hides the source, such as " + hiding_face(counts), "",
-        "let --on auto find the face of each receiver");
-    return {.what = "source " + name + " gives 0 at " + at_whom() + ": " + text::joined(reasons),
-            .why = text::joined(laws, "; "),
-            .suggestion = text::joined(advice, "; ")};
+std::string advice_to_turn(const Scene& scene, std::span<const Receiver> receivers) {
+  const std::vector<Selection> patches = receiver_patches(scene, receivers);
+  if (patches.empty()) return "if the other side is meant, turn the normals of the receivers round";
+  return advice_to_turn(scene, listed(scene, patches), patches);
+}
+
+Problem problem(const Scene& scene, std::span<const Receiver> receivers, std::size_t looked_at, const Selection& source,
+                const Counts& counts) {
+  const std::string name = listed(scene, std::span(&source, 1));
+  std::vector<std::string> reasons, laws, advice;
+  const auto add = [&](std::size_t count, const char* one, const char* many, const std::string& rest,
+                       const std::string& law, const std::string& what_to_do) {
+    if (count == 0) return;
+    const std::string who = count < looked_at ? std::to_string(count) : count == 1 ? "it" : "they";
+    reasons.push_back(who + ' ' + (count == 1 ? one : many) + ' ' + rest);
+    if (!law.empty()) laws.push_back(law);
+    if (std::ranges::find(advice, what_to_do) == advice.end()) advice.push_back(what_to_do);
+  };
+  add(counts.on_it, "lies", "lie", "on the source", "", "choose other receivers or another source");
+  add(counts.behind, "is", "are", "behind the source", "a source emits only from its front",
+      advice_to_turn(scene, name, std::span(&source, 1)));
+  add(counts.below, "looks", "look", "away from the source", "a receiver sees only what lies before it",
+      advice_to_turn(scene, receivers));
+  if (counts.hidden > 0) {
+    const std::string& id = receivers[counts.first_hidden].id;
+    add(counts.hidden, "lies", "lie",
+        "just behind a face that hides the source, such as " +
+            text::in_quotes(scene.name_of(counts.hiding), text::kShownName) + " at receiver " +
+            text::in_quotes(id.empty() ? std::to_string(counts.first_hidden + 1) : id),
+        "", "let --on auto find the face of each receiver");
   }
-
- private:
-  [[nodiscard]] std::string at_whom() const {
-    if (looked_at_ < receivers_.size())
-      return "each of " + std::to_string(looked_at_) + " receivers looked at, of " + std::to_string(receivers_.size());
-    return receivers_.size() == 1 ? "the only receiver" : "all " + text::counted(receivers_.size(), "receiver");
-  }
-
-  [[nodiscard]] std::string advice_to_turn_receivers() const {
-    const std::vector<Selection> patches = receiver_patches(scene_, receivers_);
-    if (patches.empty()) return "if the other side is meant, turn the normals of the receivers round";
-    return advice_to_turn(listed(scene_, patches), patches);
-  }
-
-  [[nodiscard]] std::string advice_to_turn(const std::string& names, std::span<const Selection> selections) const {
-    const std::string advice = advice_to_flip(scene_, selections);
-    return advice.empty() ? "choose other receivers or another source"
-                          : "if the other side of " + names + " is meant, " + advice;
-  }
-
-  [[nodiscard]] std::string hiding_face(const Counts& counts) const {
-    if (counts.hidden == 0) return {};
-    const std::string& id = receivers_[counts.first_hidden].id;
-    return text::in_quotes(scene_.name_of(counts.hiding), text::kShownName) + " at receiver " +
-           text::in_quotes(id.empty() ? std::to_string(counts.first_hidden + 1) : id);
-  }
-
-  const Scene& scene_;
-  const std::span<const Receiver> receivers_;
-  const std::size_t looked_at_;
-};
+  const std::string at =
+      looked_at < receivers.size()
+          ? "each of " + std::to_string(looked_at) + " receivers looked at, of " + std::to_string(receivers.size())
+      : receivers.size() == 1 ? "the only receiver"
+                              : "all " + text::counted(receivers.size(), "receiver");
+  return {.what = "source " + name + " gives 0 at " + at + ": " + text::joined(reasons),
+          .why = text::joined(laws, "; "),
+          .suggestion = text::joined(advice, "; ")};
+}
 
 }  // namespace
 
@@ -186,13 +174,12 @@ std::vector<Problem> warnings_of_dark_sources(const Scene& scene, std::span<cons
   const std::vector<Selection> emitters = scene.emitters();
   if (sources.empty()) sources = emitters;
   DarkSource finder(scene, receivers);
-  const Wording wording(scene, receivers, finder.looked_at());
   const std::vector<Selection> own = receiver_patches(scene, receivers);
   const auto is_own = [&](const Selection& source) { return own.size() == 1 && own.front().patch == source.patch; };
   for (const Selection& source : sources) {
     if (sources.size() > 1 && is_own(source)) continue;
     const std::optional<Counts> counts = finder.counts(ExactSource(scene, source));
-    if (counts) warnings.push_back(wording.problem(source, *counts));
+    if (counts) warnings.push_back(problem(scene, receivers, finder.looked_at(), source, *counts));
   }
   return warnings;
 }
@@ -220,8 +207,7 @@ struct Front {
 
 class FrontFinder {
  public:
-  explicit FrontFinder(const Scene& scene) : scene_(scene), sight_(scene), pieces_(scene.patches().size()) {
-    for (std::uint32_t p = 0; p < scene.pieces().size(); ++p) pieces_[patch_of(p)].push_back(p);
+  explicit FrontFinder(const Scene& scene) : scene_(scene), sight_(scene), pieces_(pieces_by_patch(scene)) {
     for (std::uint32_t p = 0; p < scene.pieces().size(); ++p) all_.push_back(p);
     all_ = spread(all_, kLinesTo);
   }
@@ -237,9 +223,7 @@ class FrontFinder {
   }
 
  private:
-  [[nodiscard]] std::size_t patch_of(std::uint32_t piece) const {
-    return index_of(scene_.face(scene_.pieces()[piece].face).patch);
-  }
+  [[nodiscard]] std::size_t patch_of(std::uint32_t piece) const { return index_of(slips::patch_of(scene_, piece)); }
 
   // Returns false once nothing more needs to be known.
   bool note(std::size_t patch, const Hit& hit, Front& front) {
@@ -329,7 +313,7 @@ std::vector<bool> closed_patches(const Scene& scene) {
   const ClosedSurfaces& surfaces = closed_surfaces(scene);
   for (std::uint32_t p = 0; p < scene.pieces().size(); ++p) {
     const bool open = surfaces.empty() || surfaces.of_piece(p) == ClosedSurfaces::kNone;
-    if (open) closed[index_of(scene.face(scene.pieces()[p].face).patch)] = false;
+    if (open) closed[index_of(patch_of(scene, p))] = false;
   }
   return closed;
 }

@@ -9,7 +9,6 @@
 #include "kernel/vec.h"
 #include "scene/selections.h"
 #include "slips/flip_trial.h"
-#include "slips/outlook.h"
 #include "slips/sight_lines.h"
 #include "text/names.h"
 #include "text/phrases.h"
@@ -46,33 +45,6 @@ Turned turned(const Scene& scene, std::span<const Selection> selections) {
   return result;
 }
 
-}  // namespace
-
-std::string flag_to_flip(const Scene& scene, std::span<const Selection> selections) {
-  const std::vector<Selection> not_yet = turned(scene, selections).not_yet;
-  return not_yet.size() > 1 && not_yet == all_patches(scene) && !has_patch(scene, "all")
-             ? "--flip all"
-             : flag_words(scene, "--flip", not_yet);
-}
-
-std::string words_to_flip(const Scene& scene, std::span<const Selection> selections) {
-  const Turned parts = turned(scene, selections);
-  std::string advice;
-  if (!parts.not_yet.empty()) {
-    const std::string flag = flag_to_flip(scene, selections);
-    advice = "turn " + std::string(parts.not_yet.size() == 1 ? "it" : "them") + " round with " +
-             (flag.empty() ? "--flip NAME,NAME,..." : flag);
-  }
-  if (parts.by_flag.empty()) return advice;
-  return advice + (advice.empty() ? "" : ", and ") + "leave out --flip for " + listed(scene, parts.by_flag);
-}
-
-std::string advice_to_flip(const Scene& scene, std::span<const Selection> selections) {
-  return FlipTrials(scene).try_flip(selections).darkens() ? std::string() : words_to_flip(scene, selections);
-}
-
-namespace {
-
 // By face: whether vn contradict all faces of its oriented surface. Otherwise its neighbours say that vn are wrong.
 std::vector<bool> contradicted_as_a_whole(const Scene& scene) {
   const std::vector<std::uint32_t> surface = oriented_surfaces(scene);
@@ -83,8 +55,6 @@ std::vector<bool> contradicted_as_a_whole(const Scene& scene) {
   for (std::uint32_t p = 0; p < surface.size(); ++p) whole[index_of(scene.pieces()[p].face)] = !agrees[surface[p]];
   return whole;
 }
-
-}  // namespace
 
 std::optional<Finding> contradicting_normals(const Scene& scene, FlipTrials& trials) {
   std::vector<FaceId> faces, to_flip;
@@ -132,8 +102,6 @@ std::optional<Finding> contradicting_normals(const Scene& scene, FlipTrials& tri
   return finding;
 }
 
-namespace {
-
 // Over the vertices that a face with area uses.
 struct CoordinateRange {
   double largest = 0.0;       // coordinate, in magnitude
@@ -173,8 +141,6 @@ CoordinateRange range_of(const Scene& scene) {
   return extent;
 }
 
-}  // namespace
-
 std::optional<Finding> odd_scale(const Scene& scene) {
   constexpr double kLarge = 1e4, kSmall = 1e-3, kCoarse = 1e-4;
   if (scene.pieces().empty()) return std::nullopt;
@@ -204,8 +170,6 @@ std::optional<Finding> odd_scale(const Scene& scene) {
   return finding;
 }
 
-namespace {
-
 std::vector<Finding> findings_of_fronts(const Scene& scene, FlipTrials& trials) {
   std::vector<Finding> turned = turned_surfaces(scene, trials);
   return turned.empty() ? unseen_fronts(scene, trials) : turned;
@@ -221,6 +185,29 @@ std::vector<Problem> words_of(std::span<const Finding> findings) {
 }
 
 }  // namespace
+
+std::string flag_to_flip(const Scene& scene, std::span<const Selection> selections) {
+  const std::vector<Selection> not_yet = turned(scene, selections).not_yet;
+  return not_yet.size() > 1 && not_yet == all_patches(scene) && !has_patch(scene, "all")
+             ? "--flip all"
+             : flag_words(scene, "--flip", not_yet);
+}
+
+std::string words_to_flip(const Scene& scene, std::span<const Selection> selections) {
+  const Turned parts = turned(scene, selections);
+  std::string advice;
+  if (!parts.not_yet.empty()) {
+    const std::string flag = flag_to_flip(scene, selections);
+    advice = "turn " + std::string(parts.not_yet.size() == 1 ? "it" : "them") + " round with " +
+             (flag.empty() ? "--flip NAME,NAME,..." : flag);
+  }
+  if (parts.by_flag.empty()) return advice;
+  return advice + (advice.empty() ? "" : ", and ") + "leave out --flip for " + listed(scene, parts.by_flag);
+}
+
+std::string advice_to_flip(const Scene& scene, std::span<const Selection> selections) {
+  return FlipTrials(scene).try_flip(selections).darkens() ? std::string() : words_to_flip(scene, selections);
+}
 
 std::vector<Finding> diagnose(const Scene& scene) {
   const kernel::StandardArithmetic arithmetic;

@@ -10,6 +10,7 @@
 #include "kernel/vec.h"
 #include "receivers/own_pieces.h"
 #include "scene/scene.h"
+#include "scene/selections.h"
 #include "slips/flip_trial.h"
 #include "text/phrases.h"
 #include "text/text_lines.h"
@@ -126,6 +127,30 @@ std::vector<Hit> SightLines::hits_in_sight(const Vec3& from, const Vec3& directi
   return hits;
 }
 
+Box box_of(const Scene& scene, std::uint32_t piece) {
+  return exactff::box_of(scene, scene.corners(scene.pieces()[piece]));
+}
+
+std::vector<std::uint32_t> sorted_places(const Scene& scene, const Face& face) {
+  std::vector<std::uint32_t> result;
+  for (const auto& ring : face.rings) {
+    for (const std::uint32_t v : ring) result.push_back(places(scene)[v]);
+  }
+  std::ranges::sort(result);
+  return result;
+}
+
+bool holds(const Box& outer, const Box& inner) {
+  const auto within = [&](double Vec3::*c) { return outer.low.*c <= inner.low.*c && inner.high.*c <= outer.high.*c; };
+  return within(&Vec3::x) && within(&Vec3::y) && within(&Vec3::z);
+}
+
+std::vector<std::vector<std::uint32_t>> pieces_by_patch(const Scene& scene) {
+  std::vector<std::vector<std::uint32_t>> pieces(scene.patches().size());
+  for (std::uint32_t p = 0; p < scene.pieces().size(); ++p) pieces[index_of(patch_of(scene, p))].push_back(p);
+  return pieces;
+}
+
 std::vector<std::uint32_t> spread(const std::vector<std::uint32_t>& all, std::size_t count) {
   if (all.size() <= count) return all;
   std::vector<std::uint32_t> chosen;
@@ -156,8 +181,8 @@ double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-double solid_angle_of(const Scene& scene, std::span<const std::uint32_t> pieces, const Vec3& point,
-                      std::uint64_t& triangles) {
+bool is_within(const Scene& scene, std::span<const std::uint32_t> pieces, const Vec3& point, std::uint64_t& triangles) {
+  constexpr double kHalfSphere = 6.283185307179586;
   double sum = 0.0;
   for (const std::uint32_t piece : pieces) {
     const auto corners = scene.corners(scene.pieces()[piece]);
@@ -165,7 +190,7 @@ double solid_angle_of(const Scene& scene, std::span<const std::uint32_t> pieces,
     for (std::size_t i = 2; i < corners.size(); ++i) sum += solid_angle(seen(0), seen(i - 1), seen(i));
     triangles += corners.size() - 2;
   }
-  return sum;
+  return std::abs(sum) > kHalfSphere;
 }
 
 // --- Overlaps ---
@@ -244,13 +269,6 @@ class Plane {
   Vec3 origin_, normal_, u_, v_;
 };
 
-Box box_of(const Scene& scene, std::uint32_t piece) {
-  const auto corners = scene.corners(scene.pieces()[piece]);
-  Box box{scene.vertices()[corners.front()], scene.vertices()[corners.front()]};
-  for (const std::uint32_t corner : corners) box.include(scene.vertices()[corner]);
-  return box;
-}
-
 double diameter_of(const Scene& scene, std::uint32_t piece) {
   const Box box = box_of(scene, piece);
   return kernel::distance(box.high, box.low);
@@ -262,36 +280,6 @@ bool are_in_one_plane(const Scene& scene, const Piece& a, const Piece& b) {
     return kernel::orientation(at(a.frame[0]), at(a.frame[1]), at(a.frame[2]), at(v)) == 0;
   });
 }
-
-}  // namespace
-
-std::optional<PieceOverlap> overlap_of(const Scene& scene, const SightLines& sight, std::uint32_t a, std::uint32_t b,
-                                       double reach) {
-  constexpr double kNearlyParallel = 0.99;  // a millionth of a diameter leaves slim pieces some freedom
-  if (std::abs(dot(sight.normal(a), sight.normal(b))) < kNearlyParallel) return std::nullopt;
-  const double size_a = diameter_of(scene, a), size_b = diameter_of(scene, b);
-  const std::uint32_t larger = size_a < size_b ? b : a, smaller = size_a < size_b ? a : b;
-  const Plane plane(scene, sight, larger);
-  const double apart = plane.distance(smaller);
-  if (!(apart <= std::max(reach, kNear * std::max(size_a, size_b)))) return std::nullopt;
-  const Polygon under = plane.outline(larger);
-  Polygon common = plane.outline(smaller);
-  const double least = 0.5 * std::min(twice_area(under), twice_area(common));
-  for (std::size_t i = 0; i < under.size() && !common.empty(); ++i) {
-    common = left_part(common, under[i], under[(i + 1) % under.size()]);
-  }
-  const double area = 0.5 * twice_area(common);
-  if (!(area > kSliver * least)) return std::nullopt;
-  if (are_in_one_plane(scene, scene.pieces()[a], scene.pieces()[b])) return PieceOverlap{area, 0.0};
-  if (!(area > kSliverApart * least)) return std::nullopt;
-  return PieceOverlap{area, std::max(apart, std::numeric_limits<double>::min())};
-}
-
-double piece_area(const Scene& scene, const SightLines& sight, std::uint32_t piece) {
-  return 0.5 * twice_area(Plane(scene, sight, piece).outline(piece));
-}
-
-namespace {
 
 class OverlapFinder {
  public:
@@ -350,16 +338,8 @@ class OverlapFinder {
   }
 
   [[nodiscard]] bool have_same_corners(const Face& a, const Face& b) const {
-    const auto places_of = [&](const Face& face) {
-      std::vector<std::uint32_t> result;
-      for (const auto& ring : face.rings) {
-        for (const std::uint32_t v : ring) result.push_back(places(scene_)[v]);
-      }
-      std::ranges::sort(result);
-      return result;
-    };
     const auto size = [](const auto& ring) { return ring.size(); };
-    return std::ranges::equal(a.rings, b.rings, {}, size, size) && places_of(a) == places_of(b);
+    return std::ranges::equal(a.rings, b.rings, {}, size, size) && sorted_places(scene_, a) == sorted_places(scene_, b);
   }
 
   [[nodiscard]] Overlap overlap(std::span<const Selection> selections, std::pair<std::uint32_t, std::uint32_t> pair,
@@ -382,19 +362,6 @@ class OverlapFinder {
   std::uint64_t visits_ = 0, found_ = 0;
 };
 
-}  // namespace
-
-std::vector<Overlap> overlapping_fronts(const Scene& scene, std::span<const Selection> selections) {
-  if (selections.size() < 2) return {};
-  return OverlapFinder(scene, selections).find(selections);
-}
-
-namespace {
-
-std::string quoted(const Scene& scene, const Selection& selection) {
-  return text::in_quotes(scene.name_of(selection), text::kShownName);
-}
-
 std::string description(const Scene& scene, const Overlap& one) {
   const std::string where = one.apart == 0.0 ? "in" : "within " + text::short_number(one.apart, 1) + " of";
   return quoted(scene, one.smaller) + " lies " + where + " the plane of " + quoted(scene, one.larger) +
@@ -416,6 +383,37 @@ Problem words_of(const Scene& scene, std::span<const Overlap> overlaps, const st
 
 }  // namespace
 
+std::optional<PieceOverlap> overlap_of(const Scene& scene, const SightLines& sight, std::uint32_t a, std::uint32_t b,
+                                       double reach) {
+  constexpr double kNearlyParallel = 0.99;  // a millionth of a diameter leaves slim pieces some freedom
+  if (std::abs(dot(sight.normal(a), sight.normal(b))) < kNearlyParallel) return std::nullopt;
+  const double size_a = diameter_of(scene, a), size_b = diameter_of(scene, b);
+  const std::uint32_t larger = size_a < size_b ? b : a, smaller = size_a < size_b ? a : b;
+  const Plane plane(scene, sight, larger);
+  const double apart = plane.distance(smaller);
+  if (!(apart <= std::max(reach, kNear * std::max(size_a, size_b)))) return std::nullopt;
+  const Polygon under = plane.outline(larger);
+  Polygon common = plane.outline(smaller);
+  const double least = 0.5 * std::min(twice_area(under), twice_area(common));
+  for (std::size_t i = 0; i < under.size() && !common.empty(); ++i) {
+    common = left_part(common, under[i], under[(i + 1) % under.size()]);
+  }
+  const double area = 0.5 * twice_area(common);
+  if (!(area > kSliver * least)) return std::nullopt;
+  if (are_in_one_plane(scene, scene.pieces()[a], scene.pieces()[b])) return PieceOverlap{area, 0.0};
+  if (!(area > kSliverApart * least)) return std::nullopt;
+  return PieceOverlap{area, std::max(apart, std::numeric_limits<double>::min())};
+}
+
+double piece_area(const Scene& scene, const SightLines& sight, std::uint32_t piece) {
+  return 0.5 * twice_area(Plane(scene, sight, piece).outline(piece));
+}
+
+std::vector<Overlap> overlapping_fronts(const Scene& scene, std::span<const Selection> selections) {
+  if (selections.size() < 2) return {};
+  return OverlapFinder(scene, selections).find(selections);
+}
+
 Problem warning_of_overlaps(const Scene& scene, std::span<const Overlap> overlaps) {
   return words_of(scene, overlaps, "there both count in full, and rows of a matrix exceed 1");
 }
@@ -424,10 +422,8 @@ std::vector<Finding> overlap_findings(const Scene& scene, std::span<const Select
   const auto is_turned = [&](const Selection& patch) {
     return std::ranges::any_of(turned, [&](const Selection& one) { return one.patch == patch.patch; });
   };
-  std::vector<Selection> patches;
-  for (std::size_t p = 0; p < scene.patches().size(); ++p) patches.push_back({static_cast<PatchId>(p), {}, scene.id()});
   std::vector<Overlap> in_one_plane, apart;
-  for (const Overlap& one : overlapping_fronts(scene, patches)) {
+  for (const Overlap& one : overlapping_fronts(scene, all_patches(scene))) {
     if (one.doubled || is_turned(one.smaller) || is_turned(one.larger)) continue;
     (one.apart == 0.0 ? in_one_plane : apart).push_back(one);
   }

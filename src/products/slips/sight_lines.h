@@ -71,12 +71,21 @@ class SightLines {
 // angle.
 [[nodiscard]] Vec3 ray_before(const Vec3& normal, int index);
 
-// --- Solid angles in doubles ---
+// --- Patches and places of pieces ---
 
-// The sum of the signed solid angles of the pieces: 4 pi times the winding number of a closed surface, negative inside
-// one whose fronts look outward. Counts its triangles.
-[[nodiscard]] double solid_angle_of(const Scene& scene, std::span<const std::uint32_t> pieces, const Vec3& point,
-                                    std::uint64_t& triangles);
+[[nodiscard]] inline PatchId patch_of(const Scene& scene, std::uint32_t piece) {
+  return scene.face(scene.pieces()[piece].face).patch;
+}
+[[nodiscard]] std::vector<std::vector<std::uint32_t>> pieces_by_patch(const Scene& scene);
+[[nodiscard]] Box box_of(const Scene& scene, std::uint32_t piece);
+// Of all corners of the face, sorted.
+[[nodiscard]] std::vector<std::uint32_t> sorted_places(const Scene& scene, const Face& face);
+[[nodiscard]] bool holds(const Box& outer, const Box& inner);
+
+// Whether the point lies within a closed surface of these pieces, by the sum of their signed solid angles: 4 pi times
+// the winding number, negative inside one whose fronts look outward. Counts its triangles.
+[[nodiscard]] bool is_within(const Scene& scene, std::span<const std::uint32_t> pieces, const Vec3& point,
+                             std::uint64_t& triangles);
 
 // --- Pieces that lie in nearly one plane and cover each other ---
 

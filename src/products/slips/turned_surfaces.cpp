@@ -24,15 +24,6 @@ namespace {
 constexpr std::size_t kMostPoints = 32;               // to be looked for inside a surface
 constexpr std::uint64_t kMostTriangles = 20'000'000;  // in all solid angles: about a second
 
-bool contains(const Box& outer, const Box& inner) {
-  const auto within = [](double low, double high, double inner_low, double inner_high) {
-    return low <= inner_low && inner_high <= high;
-  };
-  return within(outer.low.x, outer.high.x, inner.low.x, inner.high.x) &&
-         within(outer.low.y, outer.high.y, inner.low.y, inner.high.y) &&
-         within(outer.low.z, outer.high.z, inner.low.z, inner.high.z);
-}
-
 class TurnedSurfaces {
  public:
   explicit TurnedSurfaces(const Scene& scene)
@@ -95,7 +86,7 @@ class TurnedSurfaces {
     visit_pieces_near(scene_, box, 0.0, [&](std::uint32_t piece) {
       if (found_.of_piece(piece) == surface) return true;
       const Vec3 centre = centre_of(piece);
-      if (contains(box, {centre, centre})) points.push_back(centre);
+      if (holds(box, {centre, centre})) points.push_back(centre);
       return points.size() < kMostPoints;
     });
     return std::ranges::any_of(points, [&](const Vec3& point) { return is_inside(surface, point); });
@@ -107,15 +98,13 @@ class TurnedSurfaces {
     const Vec3 point = centre_of(pieces_[surface].front());
     for (std::uint32_t s = 0; s < pieces_.size(); ++s) {
       const ClosedSurface& other = found_.surfaces()[s];
-      if (s != surface && !other.turned_inside_out && contains(other.box, box) && is_inside(s, point)) return true;
+      if (s != surface && !other.turned_inside_out && holds(other.box, box) && is_inside(s, point)) return true;
     }
     return false;
   }
 
   bool is_inside(std::uint32_t surface, const Vec3& point) {
-    if (triangles_ >= kMostTriangles) return false;
-    constexpr double kHalfSphere = 6.283185307179586;
-    return std::abs(solid_angle_of(scene_, pieces_[surface], point, triangles_)) > kHalfSphere;
+    return triangles_ < kMostTriangles && is_within(scene_, pieces_[surface], point, triangles_);
   }
 
   [[nodiscard]] Vec3 centre_of(std::uint32_t piece) const {
@@ -165,14 +154,7 @@ Finding finding_of(const Scene& scene, const TurnedSurfaces& surfaces, const std
 
 // All faces of `some`, and others. In a room of which walls look out, too, boxes are to be turned together with these.
 bool holds_more(const Scene& scene, std::span<const Selection> all, std::span<const Selection> some) {
-  const auto faces_of = [&](std::span<const Selection> selections) {
-    std::set<FaceId> faces;
-    for (const Selection& one : selections) {
-      for (const FaceId face : scene.faces_of(one)) faces.insert(face);
-    }
-    return faces;
-  };
-  const std::set<FaceId> more = faces_of(all), fewer = faces_of(some);
+  const std::set<FaceId> more = faces_of(scene, all), fewer = faces_of(scene, some);
   return more.size() > fewer.size() && std::ranges::includes(more, fewer);
 }
 
@@ -235,13 +217,8 @@ class TwinFinder {
 
  private:
   [[nodiscard]] std::uint64_t hash_of(const Face& face) const {
-    Ring all;
-    for (const Ring& ring : face.rings) {
-      for (const std::uint32_t v : ring) all.push_back(places_[v]);
-    }
-    std::ranges::sort(all);
     text::Fnv1a hash;
-    for (const std::uint32_t place : all) hash.add(std::uint64_t{place});
+    for (const std::uint32_t place : sorted_places(scene_, face)) hash.add(std::uint64_t{place});
     return hash.value();
   }
 

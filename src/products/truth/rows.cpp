@@ -10,6 +10,7 @@
 #include "kernel/numbers.h"
 #include "kernel/vec.h"
 #include "scene/scene.h"
+#include "scene/selections.h"
 #include "text/hashes.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -79,6 +80,42 @@ Request completed(Request request) {
   return request;
 }
 
+const GridSize& size_of(const Receiver& receiver) { return receiver.cell->lattice->size; }
+// Of the centre of a cell; from 0 to 1, correctly rounded.
+double place_along(int cell, int cells) { return (2.0 * cell - 1.0) / (2.0 * cells); }
+
+// True if it is on record that no occluder hides anything of what is above the horizon: F is then the same as without
+// occluders.
+bool nothing_in_the_shaft(const FormFactor& result) {
+  return !result.planes.empty() &&
+         std::all_of(result.planes.begin(), result.planes.end(), [](const PlaneRecord& plane) {
+           return plane.outcome == Outcome::kUnoccluded || plane.outcome == Outcome::kReceiverFace ||
+                  plane.outcome == Outcome::kBehind || plane.outcome == Outcome::kBelowHorizon;
+         });
+}
+
+// Exact: whether the normal points away from the front of the receiver's first face.
+whole_view::FaceSide side_of(const Scene& scene, const Receiver& receiver) {
+  static constexpr Vec3 kOrigin;
+  if (receiver.on.empty()) return whole_view::FaceSide::kFront;
+  const Vec3& front = scene.face(receiver.on.front()).newell;
+  return kernel::exact_sign_of_dot(front, {kOrigin, receiver.normal}) < 0 ? whole_view::FaceSide::kBack
+                                                                          : whole_view::FaceSide::kFront;
+}
+
+class RowComputer : public Rows::Computer {
+ public:
+  explicit RowComputer(const Rows& rows) : rows_(rows) {}
+  void append(std::uint64_t row, std::string& text) override {
+    rows_.compute(row, results_);
+    rows_.columns().append_csv(results_.row, text);
+  }
+
+ private:
+  const Rows& rows_;
+  Rows::Results results_;
+};
+
 }  // namespace
 
 Rows::Rows(Request request) : request_(completed(std::move(request))), columns_of_request_(columns_of(request_)) {
@@ -108,9 +145,7 @@ Rows::Rows(Request request) : request_(completed(std::move(request))), columns_o
 void Rows::describe(const std::vector<std::string>& near_misses) {
   const Scene& scene = *request_.scene;
   const auto set_names = [&](const char* key, const std::vector<Selection>& selections) {
-    std::vector<std::string> names;
-    for (const Selection& one : selections) names.push_back(scene.name_of(one));
-    if (!names.empty()) about_.set(key, std::move(names));
+    if (!selections.empty()) about_.set(key, names_of(scene, selections));
   };
   about_.set("scene", request_.scene_name);
   about_.set("scene_hash", scene.hash());
@@ -137,33 +172,6 @@ void Rows::describe(const std::vector<std::string>& near_misses) {
   // the light that varies over patches.
   about_.set("radiosities_claim", radiosity::words_of_claim(*request_.radiosities));
 }
-
-namespace {
-
-const GridSize& size_of(const Receiver& receiver) { return receiver.cell->lattice->size; }
-// Of the centre of a cell; from 0 to 1, correctly rounded.
-double place_along(int cell, int cells) { return (2.0 * cell - 1.0) / (2.0 * cells); }
-
-// True if it is on record that no occluder hides anything of what is above the horizon: F is then the same as without
-// occluders.
-bool nothing_in_the_shaft(const FormFactor& result) {
-  return !result.planes.empty() &&
-         std::all_of(result.planes.begin(), result.planes.end(), [](const PlaneRecord& plane) {
-           return plane.outcome == Outcome::kUnoccluded || plane.outcome == Outcome::kReceiverFace ||
-                  plane.outcome == Outcome::kBehind || plane.outcome == Outcome::kBelowHorizon;
-         });
-}
-
-// Exact: whether the normal points away from the front of the receiver's first face.
-whole_view::FaceSide side_of(const Scene& scene, const Receiver& receiver) {
-  static constexpr Vec3 kOrigin;
-  if (receiver.on.empty()) return whole_view::FaceSide::kFront;
-  const Vec3& front = scene.face(receiver.on.front()).newell;
-  return kernel::exact_sign_of_dot(front, {kOrigin, receiver.normal}) < 0 ? whole_view::FaceSide::kBack
-                                                                          : whole_view::FaceSide::kFront;
-}
-
-}  // namespace
 
 void Rows::compute(std::uint64_t number_of_row, Results& results) const {
   const std::size_t number = number_of_row / sources_->count(), source = number_of_row % sources_->count();
@@ -214,23 +222,6 @@ void Rows::compute(std::uint64_t number_of_row, Results& results) const {
   row.total_upper = {red.upper, green.upper, blue.upper};
   keep_worst(red.certified && green.certified && blue.certified);
 }
-
-namespace {
-
-class RowComputer : public Rows::Computer {
- public:
-  explicit RowComputer(const Rows& rows) : rows_(rows) {}
-  void append(std::uint64_t row, std::string& text) override {
-    rows_.compute(row, results_);
-    rows_.columns().append_csv(results_.row, text);
-  }
-
- private:
-  const Rows& rows_;
-  Rows::Results results_;
-};
-
-}  // namespace
 
 std::unique_ptr<Rows::Computer> Rows::computer() const { return std::make_unique<RowComputer>(*this); }
 

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,9 +13,9 @@
 
 #include "exactff/truth.h"
 #include "jobs/rows.h"
+#include "jobs/team.h"
 #include "radiosity/gather.h"
 #include "truth/columns.h"
-#include "truth/unit_normal.h"
 #include "whole_view/light.h"
 
 namespace exactff::truth {
@@ -82,5 +84,15 @@ class Tally {
   std::array<std::uint64_t, 4> by_status_{};
   std::string open_;  // the beginning of a row, from earlier text
 };
+
+// --- By several processes ---
+
+// As write() of exactff/truth.h, by rank 0 of a team. jobs::dismiss() must follow, whatever is thrown. Null: alone.
+Summary write(Request request, const std::filesystem::path& file, jobs::Existing existing, const jobs::RowHooks& hooks,
+              jobs::Team* team);
+
+// Runs a follower of a team, that is, any other rank. `request` must make the same request as the leader's; what it
+// throws is sent to the leader. Only the hooks `cancelled` and slow_seconds are used. Returns the exit code.
+int follow(jobs::Team& team, const std::function<Request()>& request, const jobs::RowHooks& hooks);
 
 }  // namespace exactff::truth

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <string_view>
@@ -21,140 +22,42 @@
 
 namespace exactff::vtk {
 
-Field field_of_faces(const Scene& scene, std::string name, std::span<const Selection> selections,
-                     std::size_t components, const std::function<double(std::size_t, std::size_t)>& value) {
-  std::vector<double> values(components * scene.faces().size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < selections.size(); ++i) {
-    for (const FaceId face : scene.faces_of(selections[i])) {
-      for (std::size_t c = 0; c < components; ++c) values[components * index_of(face) + c] = value(i, c);
-    }
-  }
-  return {std::move(name), components, std::move(values)};
-}
-
-// --- Write ---
-
 namespace {
 
-template <class T>
-std::vector<T> in_order(const std::vector<T>& values, std::size_t components, const std::vector<std::size_t>& order) {
-  std::vector<T> sorted;
-  sorted.reserve(components * order.size());
-  for (const std::size_t i : order) {
-    for (std::size_t c = 0; c < components; ++c) sorted.push_back(values[i * components + c]);
-  }
-  return sorted;
-}
+struct Array {
+  std::string name;
+  std::size_t components = 1;
+  std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::uint8_t>, std::vector<std::string>>
+      values;
+};
 
-void require_tuples(const Field& field, std::size_t count) {
-  const std::size_t numbers = std::visit([](const auto& values) { return values.size(); }, field.values);
-  if (numbers == field.components * count) return;
-  throw std::invalid_argument("a field has not a value for each receiver or face");
-}
+// A cell of one corner is a vertex, any other one a polygon.
+struct DataSet {
+  std::vector<Vec3> points;
+  std::vector<std::int64_t> corners;  // indices of points, cell by cell
+  std::vector<std::int64_t> ends;     // of each cell in `corners`
+  std::size_t vertices = 0;           // so many cells, the first ones, are vertices
+  std::vector<Array> of_cells;
+  std::vector<Array> of_file;
+  std::string shown;  // the array that colours the cells at first; may be empty
+};
 
-Array array_of(const Field& field, const std::vector<std::size_t>& order) {
-  Array array{field.name, field.components, {}};
-  std::visit([&](const auto& values) { array.values = in_order(values, field.components, order); }, field.values);
-  return array;
-}
+enum class Format { kPolygons, kUnstructured };
+void append(std::vector<double>& list, const Vec3& v) { list.insert(list.end(), {v.x, v.y, v.z}); }
+void append(std::vector<double>& list, const Rgb& c) { list.insert(list.end(), {c.r, c.g, c.b}); }
 
-DataSet data_of(const Content& content) {
-  const std::vector<std::size_t> order = cell_order(content.receivers);
-  DataSet data = cells_of(*content.scene, content.receivers, order);
-  for (const Field& field : content.fields) {
-    require_tuples(field, order.size());
-    data.of_cells.push_back(array_of(field, order));
-  }
-  if (!content.fields.empty()) data.shown = content.fields.front().name;
-  if (!content.about.empty()) data.of_file.push_back({"about", 1, content.about});
-  return data;
-}
-
-std::vector<double> as_vectors(const std::vector<Rgb>& colours) {
+template <class Triple>
+std::vector<double> numbers_of(const std::vector<Triple>& triples) {
   std::vector<double> list;
-  for (const Rgb& c : colours) list.insert(list.end(), {c.r, c.g, c.b});
+  for (const Triple& one : triples) append(list, one);
   return list;
 }
 
-void add(std::vector<Rgb>& sum, const std::vector<Rgb>& more) {
-  sum.resize(more.size());
-  for (std::size_t i = 0; i < more.size(); ++i) {
-    sum[i] = {sum[i].r + more[i].r, sum[i].g + more[i].g, sum[i].b + more[i].b};
-  }
-}
-
-std::vector<double> components_of(const std::vector<Vec3>& vectors) {
-  std::vector<double> numbers;
-  for (const Vec3& v : vectors) numbers.insert(numbers.end(), {v.x, v.y, v.z});
-  return numbers;
-}
-
-}  // namespace
-
-std::vector<Field> fields_of(std::vector<SourceValues> sources) {
-  const bool several = sources.size() > 1;
-  std::vector<Field> fields;
-  std::vector<Rgb> sum;
-  for (SourceValues& one : sources) {
-    const auto name = [&](const char* quantity) {
-      return several ? std::string(quantity) + " (" + one.source + ')' : std::string(quantity);
-    };
-    fields.push_back({name("exact"), 1, std::move(one.exact)});
-    fields.push_back({name("lower"), 1, std::move(one.lower)});
-    fields.push_back({name("upper"), 1, std::move(one.upper)});
-    fields.push_back({name("status"), 1, std::move(one.status)});
-    if (!one.visible_fraction.empty()) fields.push_back({name("visible fraction"), 1, std::move(one.visible_fraction)});
-    if (!one.gradient.empty()) fields.push_back({name("gradient"), 3, components_of(one.gradient)});
-    fields.push_back({name("radiosity"), 3, as_vectors(one.radiosity)});
-    if (several) add(sum, one.radiosity);
-  }
-  if (several) fields.push_back({"radiosity", 3, as_vectors(sum)});
-  return fields;
-}
-
-std::filesystem::path scene_file(const std::filesystem::path& file) {
-  return file.parent_path() / (file.stem().string() + "_scene" + file.extension().string());
-}
-
-void require_extension(const std::filesystem::path& file) { static_cast<void>(format_of(file)); }
-
-void write_faces(const Scene& scene, const std::vector<Field>& fields, std::vector<std::string> about,
-                 const std::filesystem::path& file, const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
-  const Format format = format_of(file);
-  files::WholeFile cells(file);
-  std::vector<std::size_t> face_of_cell;
-  for (const Piece& piece : scene.pieces()) face_of_cell.push_back(index_of(piece.face));
-  DataSet data = cells_of(scene);
-  for (const Field& field : fields) {
-    require_tuples(field, scene.faces().size());
-    data.of_cells.push_back(array_of(field, face_of_cell));
-  }
-  if (!fields.empty()) data.shown = fields.front().name;
-  if (!about.empty()) data.of_file.push_back({"about", 1, std::move(about)});
-  append(data, format, cells, hooks);
-  files::require_not_cancelled(hooks);
-  cells.commit();
-}
-
-void write(const Content& content, const std::filesystem::path& file, const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
-  const Format format = format_of(file);
-  files::WholeFile receivers(file), scene(scene_file(file));
-  append(data_of(content), format, receivers, hooks);
-  append(cells_of(*content.scene), format, scene, hooks);
-  files::require_not_cancelled(hooks);
-  receivers.commit();
-  scene.commit();
-}
-
-// --- Data set ---
+// --- Files ---
 
 // VTK's XML, as its "VTK File Formats" document describes it. Each array is one base64 text: the number of its bytes as
 // a UInt64, then its bytes. Offsets are those of the ends of cells. In PolyData, vertices and polygons are two lists,
 // and arrays of cells hold the values of all vertices first.
-
-namespace {
 
 constexpr int kVertex = 1, kTriangle = 5, kPolygon = 7, kQuadrilateral = 9;  // VTK's types of cells
 
@@ -182,42 +85,42 @@ class Document {
 
   template <class T>
   void numbers(const std::string& name, std::size_t components, std::span<const T> values) {
-    open(kTypeName<T>, name, components, values.size() / components);
-    text::Base64 base64;
-    const std::uint64_t bytes = values.size_bytes();
-    file_.append(base64.append(files::little_endian(std::span(&bytes, 1))));
+    open(kTypeName<T>, name, components, values.size() / components, values.size_bytes());
     constexpr std::size_t kPiece = 1 << 16;
     for (std::size_t i = 0; i < values.size(); i += kPiece) {
-      file_.append(base64.append(files::little_endian(values.subspan(i, std::min(kPiece, values.size() - i)))));
+      file_.append(base64_.append(files::little_endian(values.subspan(i, std::min(kPiece, values.size() - i)))));
     }
-    file_.append(base64.finish());
-    line("\n</DataArray>");
+    close();
   }
 
   // Texts end with a zero byte each.
   void texts(const std::string& name, const std::vector<std::string>& values) {
     std::string all;
     for (const std::string& value : values) all += text::printable(value) + '\0';
-    open("String", name, 1, values.size());
-    text::Base64 base64;
-    const std::uint64_t bytes = all.size();
-    file_.append(base64.append(files::little_endian(std::span(&bytes, 1))));
-    file_.append(base64.append(all));
-    file_.append(base64.finish());
-    line("\n</DataArray>");
+    open("String", name, 1, values.size(), all.size());
+    file_.append(base64_.append(all));
+    close();
   }
 
  private:
-  void open(std::string_view type, const std::string& name, std::size_t components, std::size_t tuples) {
+  void open(std::string_view type, const std::string& name, std::size_t components, std::size_t tuples,
+            std::uint64_t bytes) {
     files::require_not_cancelled(hooks_);
     // meshio makes a matrix of an array that says that it has one component.
     const std::string vectors = components == 1 ? "" : " NumberOfComponents=\"" + std::to_string(components) + '"';
     line("<DataArray type=\"" + std::string(type) + "\" Name=\"" + name + '"' + vectors + count("Tuples", tuples) +
          " format=\"binary\">");
+    base64_ = {};
+    file_.append(base64_.append(files::little_endian(std::span<const std::uint64_t>(&bytes, 1))));
+  }
+  void close() {
+    file_.append(base64_.finish());
+    line("\n</DataArray>");
   }
 
   files::WholeFile& file_;
   const Hooks& hooks_;
+  text::Base64 base64_;
 };
 
 // Distinct as they stand in the file, where control characters are escaped.
@@ -276,8 +179,7 @@ void put_types(const DataSet& data, Document& document) {
 }
 
 void put_points(const DataSet& data, Document& document) {
-  std::vector<double> coordinates;
-  for (const Vec3& p : data.points) coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
+  const std::vector<double> coordinates = numbers_of(data.points);
   document.line("<Points>");
   document.numbers("Points", 3, std::span<const double>(coordinates));
   document.line("</Points>");
@@ -304,8 +206,7 @@ void put_unstructured(const DataSet& data, Document& document) {
   document.line("</Cells>");
 }
 
-}  // namespace
-
+// By the extension; throws InputError for another one than .vtp and .vtu.
 Format format_of(const std::filesystem::path& file) {
   const std::string extension = text::in_lower_case(file.extension().string());
   if (extension == ".vtp") return Format::kPolygons;
@@ -331,8 +232,6 @@ void append(const DataSet& data, Format format, files::WholeFile& file, const Ho
 }
 
 // --- Cells ---
-
-namespace {
 
 constexpr std::int64_t kNone = -1;
 
@@ -471,18 +370,15 @@ class LatticeNodes {
   std::vector<std::int64_t> index_;
 };
 
-void append(std::vector<double>& list, const Vec3& v) { list.insert(list.end(), {v.x, v.y, v.z}); }
-void append(std::vector<double>& list, const Rgb& c) { list.insert(list.end(), {c.r, c.g, c.b}); }
-
-}  // namespace
-
+// The receivers in the order of their cells: those without a cell on a lattice first.
 std::vector<std::size_t> cell_order(std::span<const Receiver> receivers) {
   std::vector<std::size_t> order(receivers.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return !receivers[i].cell; });
   return order;
 }
 
+// The cells, and arrays that say which receiver each one is.
 DataSet cells_of(const Scene& scene, std::span<const Receiver> receivers, const std::vector<std::size_t>& order) {
   DataSet data;
   std::map<const Lattice*, LatticeNodes> lattices;
@@ -516,8 +412,6 @@ DataSet cells_of(const Scene& scene, std::span<const Receiver> receivers, const 
   return data;
 }
 
-namespace {
-
 // Adds only the vertices that are used: others would enlarge the picture.
 void add_pieces(const Scene& scene, DataSet& data) {
   std::vector<std::int64_t> index(scene.vertices().size(), kNone);
@@ -530,8 +424,7 @@ void add_pieces(const Scene& scene, DataSet& data) {
   }
 }
 
-}  // namespace
-
+// The pieces of the faces, with patch, face and material.
 DataSet cells_of(const Scene& scene) {
   DataSet data;
   add_pieces(scene, data);
@@ -558,6 +451,111 @@ DataSet cells_of(const Scene& scene) {
   data.of_file = {{"patch names", 1, std::move(patch_names)}, {"material names", 1, std::move(material_names)}};
   data.shown = "patch";
   return data;
+}
+
+// --- Fields ---
+
+template <class T>
+std::vector<T> in_order(const std::vector<T>& values, std::size_t components, const std::vector<std::size_t>& order) {
+  std::vector<T> sorted;
+  sorted.reserve(components * order.size());
+  for (const std::size_t i : order) {
+    for (std::size_t c = 0; c < components; ++c) sorted.push_back(values[i * components + c]);
+  }
+  return sorted;
+}
+
+void require_tuples(const Field& field, std::size_t count) {
+  const std::size_t numbers = std::visit([](const auto& values) { return values.size(); }, field.values);
+  if (numbers == field.components * count) return;
+  throw std::invalid_argument("a field has not a value for each receiver or face");
+}
+
+// `order`: of the receiver or face whose value each cell shows; `count` of them have one.
+void add_fields(const std::vector<Field>& fields, std::size_t count, const std::vector<std::size_t>& order,
+                const std::vector<std::string>& about, DataSet& data) {
+  for (const Field& field : fields) {
+    require_tuples(field, count);
+    Array& array = data.of_cells.emplace_back(Array{field.name, field.components, {}});
+    std::visit([&](const auto& values) { array.values = in_order(values, field.components, order); }, field.values);
+  }
+  if (!fields.empty()) data.shown = fields.front().name;
+  if (!about.empty()) data.of_file.push_back({"about", 1, about});
+}
+
+void add(std::vector<Rgb>& sum, const std::vector<Rgb>& more) {
+  sum.resize(more.size());
+  for (std::size_t i = 0; i < more.size(); ++i) {
+    sum[i] = {sum[i].r + more[i].r, sum[i].g + more[i].g, sum[i].b + more[i].b};
+  }
+}
+
+}  // namespace
+
+Field field_of_faces(const Scene& scene, std::string name, std::span<const Selection> selections,
+                     std::size_t components, const std::function<double(std::size_t, std::size_t)>& value) {
+  std::vector<double> values(components * scene.faces().size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < selections.size(); ++i) {
+    for (const FaceId face : scene.faces_of(selections[i])) {
+      for (std::size_t c = 0; c < components; ++c) values[components * index_of(face) + c] = value(i, c);
+    }
+  }
+  return {std::move(name), components, std::move(values)};
+}
+
+std::vector<Field> fields_of(std::vector<SourceValues> sources) {
+  const bool several = sources.size() > 1;
+  std::vector<Field> fields;
+  std::vector<Rgb> sum;
+  for (SourceValues& one : sources) {
+    const auto name = [&](const char* quantity) {
+      return several ? std::string(quantity) + " (" + one.source + ')' : std::string(quantity);
+    };
+    fields.push_back({name("exact"), 1, std::move(one.exact)});
+    fields.push_back({name("lower"), 1, std::move(one.lower)});
+    fields.push_back({name("upper"), 1, std::move(one.upper)});
+    fields.push_back({name("status"), 1, std::move(one.status)});
+    if (!one.visible_fraction.empty()) fields.push_back({name("visible fraction"), 1, std::move(one.visible_fraction)});
+    if (!one.gradient.empty()) fields.push_back({name("gradient"), 3, numbers_of(one.gradient)});
+    fields.push_back({name("radiosity"), 3, numbers_of(one.radiosity)});
+    if (several) add(sum, one.radiosity);
+  }
+  if (several) fields.push_back({"radiosity", 3, numbers_of(sum)});
+  return fields;
+}
+
+std::filesystem::path scene_file(const std::filesystem::path& file) {
+  return file.parent_path() / (file.stem().string() + "_scene" + file.extension().string());
+}
+
+void require_extension(const std::filesystem::path& file) { static_cast<void>(format_of(file)); }
+
+void write_faces(const Scene& scene, const std::vector<Field>& fields, const std::vector<std::string>& about,
+                 const std::filesystem::path& file, const Hooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
+  const Format format = format_of(file);
+  files::WholeFile cells(file);
+  std::vector<std::size_t> face_of_cell;
+  for (const Piece& piece : scene.pieces()) face_of_cell.push_back(index_of(piece.face));
+  DataSet data = cells_of(scene);
+  add_fields(fields, scene.faces().size(), face_of_cell, about, data);
+  append(data, format, cells, hooks);
+  files::require_not_cancelled(hooks);
+  cells.commit();
+}
+
+void write(const Content& content, const std::filesystem::path& file, const Hooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
+  const Format format = format_of(file);
+  files::WholeFile receivers(file), scene(scene_file(file));
+  const std::vector<std::size_t> order = cell_order(content.receivers);
+  DataSet data = cells_of(*content.scene, content.receivers, order);
+  add_fields(content.fields, order.size(), order, content.about, data);
+  append(data, format, receivers, hooks);
+  append(cells_of(*content.scene), format, scene, hooks);
+  files::require_not_cancelled(hooks);
+  receivers.commit();
+  scene.commit();
 }
 
 }  // namespace exactff::vtk

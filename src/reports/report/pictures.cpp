@@ -168,7 +168,7 @@ double brightest_pixel(const render::Picture& picture) {
 
 std::string names_of(const Scene& scene, const std::set<PatchId>& patches) {
   std::vector<std::string> names;
-  for (const PatchId patch : patches) names.push_back(scene.name_of(Selection{patch, std::nullopt, kAnyScene}));
+  for (const PatchId patch : patches) names.push_back(scene.name_of(Selection{patch, {}, scene.id()}));
   constexpr std::size_t kMost = 3;
   if (names.size() > kMost) return text::counted(names.size(), "patch", "patches");
   return text::enumerate(names);

@@ -512,7 +512,7 @@ class Division {
       }
     }
     const double deviation = std::max(points_.largest_displacement(), largest_distance_);
-    return {builder.build().with_flipped(flipped_).with_transparent(transparent_), faces_cut_, added_, deviation};
+    return {with_faces(builder.build(), flipped_, transparent_), faces_cut_, added_, deviation};
   }
 
  private:
@@ -592,11 +592,11 @@ class Division {
     const Face& face = scene_.face(cell.face);
     Rings rings = cell.rings;
     const PatchId patch = builder.patch(name);
-    const Selection selection{patch, static_cast<FaceId>(added_++)};
-    if (face.transparent) transparent_.push_back(selection);
+    const auto id = static_cast<FaceId>(added_++);
+    if (face.transparent) transparent_.push_back(id);
     if (face.flipped) {
       for (auto& ring : rings) std::ranges::reverse(ring);
-      flipped_.push_back(selection);
+      flipped_.push_back(id);
     }
     builder.add_face(patch, face.material, rings, face.line);
     if (std::exchange(textured_, cell.face) != cell.face) known_ = {};
@@ -607,7 +607,7 @@ class Division {
   const Scene& scene_;
   CutPoints points_;
   EdgeCuts cuts_;
-  std::vector<Selection> transparent_, flipped_;
+  std::vector<FaceId> transparent_, flipped_;
   std::optional<FaceId> textured_;  // the face of the texture coordinates below
   std::array<std::map<std::uint32_t, TexturePoint>, kTextureSets> known_;
   std::size_t added_ = 0, faces_cut_ = 0;

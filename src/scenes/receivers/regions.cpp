@@ -18,6 +18,7 @@
 #include "kernel/vec.h"
 #include "receivers/own_pieces.h"
 #include "scene/scene.h"
+#include "scene/selections.h"
 #include "scene/shaft_tree.h"
 
 namespace exactff {
@@ -203,9 +204,7 @@ class Finder {
 
 }  // namespace
 
-std::string numbered_name_of(const Scene& scene, FaceId face) {
-  return scene.name_of(Selection{scene.face(face).patch, face});
-}
+std::string numbered_name_of(const Scene& scene, FaceId face) { return scene.name_of(selection_of(scene, face)); }
 
 std::vector<Region> lone_regions(const Scene& scene, std::span<const FaceId> faces) {
   std::vector<Region> lone;

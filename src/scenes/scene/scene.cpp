@@ -169,13 +169,13 @@ std::string Scene::name_of(const Selection& selection) const {
 std::string Scene::name_of(FaceId id) const {
   const PatchId owner = face(id).patch;
   if (patch(owner).faces.size() == 1) return patch(owner).name;
-  return name_of(Selection{owner, id});
+  return name_of(Selection{owner, id, this->id()});
 }
 
 std::string Scene::name_of(std::span<const FaceId> faces) const {
   if (faces.empty()) return {};
   if (faces.size() == 1) return name_of(faces.front());
-  std::string name = name_of(Selection{face(faces.front()).patch, faces.front()});
+  std::string name = name_of(Selection{face(faces.front()).patch, faces.front(), id()});
   for (const FaceId id : faces.subspan(1)) name += '+' + std::to_string(face(id).number);
   return name;
 }
@@ -336,7 +336,7 @@ void require_scene(const Scene* scene) {
 }
 
 void require_of_scene(const Scene& scene, const Selection& selection) {
-  if (selection.scene != kAnyScene) require_of_scene(scene, selection.scene, "selection");
+  require_of_scene(scene, selection.scene, "selection");
   require_index(index_of(selection.patch), scene.patches().size(), "patch", "patches");
   if (!selection.face) return;
   require_face(scene, *selection.face);
@@ -403,7 +403,7 @@ void add_place(const Scene& scene, const Face& face, PatchSummary& summary) {
 
 PatchSummary summarise(const Scene& scene, PatchId id) {
   const Patch& patch = scene.patch(id);
-  std::vector<FaceId> faces = scene.faces_of({id, {}});
+  std::vector<FaceId> faces = scene.faces_of({id, {}, scene.id()});
   std::ranges::sort(faces, {}, [&](FaceId face) {  // so that no digit of a sum depends on the order of faces
     const Face& f = scene.face(face);
     const Vec3& first = scene.vertices()[f.rings[0][0]];

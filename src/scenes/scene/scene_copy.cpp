@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
-#include <set>
 #include <utility>
 
 #include "kernel/float_environment.h"
@@ -85,26 +84,26 @@ SceneCopy::SceneCopy(const Scene& scene, const Vec3& origin)
     builder_.add_face(face.patch, face.material, rings_of(face));
     if (face.piece_count > 0) copy_texture(scene, id, face.rings, builder_);
     if (face.is_twin) builder_.mark_as_twin();
-    if (face.transparent) add_transparent(face.patch, id);
+    if (face.transparent) transparent_.push_back(id);
   }
 }
 
-Selection SceneCopy::add_patch(std::string name) {
+PatchId SceneCopy::add_patch(std::string name) {
   while (has_patch(scene_, name)) name += '\'';
-  return {builder_.patch(name), {}};
+  return builder_.patch(name);
 }
 
-void SceneCopy::add_face(const Selection& patch, std::vector<std::uint32_t> corners) {
-  add_transparent(patch.patch, next_face());
-  builder_.add_face(patch.patch, scene_.faces().front().material, {std::move(corners)});
+void SceneCopy::add_face(PatchId patch, std::vector<std::uint32_t> corners) {
+  transparent_.push_back(next_face());
+  builder_.add_face(patch, scene_.faces().front().material, {std::move(corners)});
 }
 
-void SceneCopy::add_twin(const Selection& patch, const Face& face) {
+void SceneCopy::add_twin(PatchId patch, const Face& face) {
   const FaceId twin = next_face();
-  if (face.transparent) add_transparent(patch.patch, twin);
+  if (face.transparent) transparent_.push_back(twin);
   Rings rings = face.rings;
   for (std::vector<std::uint32_t>& ring : rings) std::ranges::reverse(ring);
-  builder_.add_face(patch.patch, face.material, std::move(rings));
+  builder_.add_face(patch, face.material, std::move(rings));
   builder_.mark_as_twin();
 }
 
@@ -179,15 +178,6 @@ std::unique_ptr<SceneInside::Data> copy_of(const SceneInside::Data& data) {
   return copy;
 }
 
-std::set<FaceId> all_faces_of(const Scene& scene, std::span<const Selection> selections) {
-  std::set<FaceId> all;
-  for (const Selection& selection : selections) {
-    const std::vector<FaceId> faces = scene.faces_of(selection);
-    all.insert(faces.begin(), faces.end());
-  }
-  return all;
-}
-
 }  // namespace
 
 Scene regrouped(const Scene& scene, const std::vector<std::string>& names,
@@ -215,7 +205,7 @@ Scene regrouped(const Scene& scene, const std::vector<std::string>& names,
 Scene Scene::with_flipped(std::span<const Selection> selections) const {
   const kernel::StandardArithmetic arithmetic;
   auto copy = copy_of(data());
-  for (const FaceId id : all_faces_of(*this, selections)) {
+  for (const FaceId id : exactff::faces_of(*this, selections)) {
     Face& face = copy->faces[index_of(id)];
     for (Texture& texture : copy->textures) flip(texture, face, id);
     flip(face);
@@ -226,7 +216,7 @@ Scene Scene::with_flipped(std::span<const Selection> selections) const {
 
 Scene Scene::with_transparent(std::span<const Selection> selections) const {
   auto copy = copy_of(data());
-  for (const FaceId id : all_faces_of(*this, selections)) {
+  for (const FaceId id : exactff::faces_of(*this, selections)) {
     Face& face = copy->faces[index_of(id)];
     face.transparent = true;
     for (std::uint32_t p = 0; p < face.piece_count; ++p) copy->pieces[face.first_piece + p].transparent = true;
@@ -234,6 +224,12 @@ Scene Scene::with_transparent(std::span<const Selection> selections) const {
   Scene changed(std::move(copy));
   changed.set_warnings_of_glass();
   return changed;
+}
+
+Scene with_faces(const Scene& scene, std::vector<FaceId> flipped, std::vector<FaceId> transparent) {
+  if (flipped.empty()) return scene.with_transparent(selections_of(scene, std::move(transparent)));
+  const Scene turned = scene.with_flipped(selections_of(scene, std::move(flipped)));
+  return turned.with_transparent(selections_of(turned, std::move(transparent)));
 }
 
 Scene Scene::with_unit(Unit unit) const {

@@ -13,6 +13,9 @@ namespace exactff {
 // With the name, the files, the unit and the materials of the scene, and nothing else.
 [[nodiscard]] SceneBuilder begun_as(const Scene& scene);
 
+// The same scene with these faces turned round, and these transparent.
+[[nodiscard]] Scene with_faces(const Scene& scene, std::vector<FaceId> flipped, std::vector<FaceId> transparent);
+
 // The ids of all patches, faces and vertices of the given scene stay the same. Refers to that scene.
 class SceneCopy {
  public:
@@ -20,22 +23,21 @@ class SceneCopy {
   explicit SceneCopy(const Scene& scene, const Vec3& origin = {});
 
   // Named so, with an apostrophe if the scene has a patch of this name.
-  Selection add_patch(std::string name);
+  PatchId add_patch(std::string name);
   std::uint32_t add_vertex(const Vec3& vertex) { return builder_.add_vertex(vertex); }
   // A transparent face with the material of the first face.
-  void add_face(const Selection& patch, std::vector<std::uint32_t> corners);
+  void add_face(PatchId patch, std::vector<std::uint32_t> corners);
   // The face turned round, with its material, transparent if it is.
-  void add_twin(const Selection& patch, const Face& face);
+  void add_twin(PatchId patch, const Face& face);
 
-  Scene take() { return builder_.build().with_transparent(transparent_); }
+  Scene take() { return with_faces(builder_.build(), {}, std::move(transparent_)); }
 
  private:
-  void add_transparent(PatchId patch, FaceId face) { transparent_.push_back({patch, face}); }
   FaceId next_face() { return static_cast<FaceId>(scene_.faces().size() + added_++); }
 
   const Scene& scene_;
   SceneBuilder builder_;
-  std::vector<Selection> transparent_;
+  std::vector<FaceId> transparent_;
   std::size_t added_ = 0;
 };
 

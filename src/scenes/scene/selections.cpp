@@ -39,16 +39,35 @@ std::vector<Selection> selections_of(const Scene& scene, std::vector<FaceId> fac
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   std::vector<Selection> selections;
   for (auto first = faces.begin(); first != faces.end();) {
-    const PatchId patch = scene.face(*first).patch;
-    const auto last = std::find_if(first, faces.end(), [&](FaceId id) { return scene.face(id).patch != patch; });
-    if (static_cast<std::size_t>(last - first) == scene.faces_of({patch, {}}).size()) {
-      selections.push_back({patch, {}, scene.id()});
+    const Selection patch{scene.face(*first).patch, {}, scene.id()};
+    const auto last = std::find_if(first, faces.end(), [&](FaceId id) { return scene.face(id).patch != patch.patch; });
+    if (static_cast<std::size_t>(last - first) == scene.faces_of(patch).size()) {
+      selections.push_back(patch);
     } else {
-      for (auto face = first; face != last; ++face) selections.push_back({patch, *face, scene.id()});
+      for (auto face = first; face != last; ++face) selections.push_back(selection_of(scene, *face));
     }
     first = last;
   }
   return selections;
+}
+
+double area_of(const Scene& scene, const Selection& selection) {
+  double area = 0.0;
+  for (const FaceId face : scene.faces_of(selection)) area += scene.face(face).area;
+  return area;
+}
+
+std::set<FaceId> faces_of(const Scene& scene, std::span<const Selection> selections) {
+  std::set<FaceId> all;
+  for (const Selection& selection : selections) {
+    const std::vector<FaceId> faces = scene.faces_of(selection);
+    all.insert(faces.begin(), faces.end());
+  }
+  return all;
+}
+
+std::string quoted(const Scene& scene, const Selection& selection) {
+  return text::in_quotes(scene.name_of(selection), text::kShownName);
 }
 
 std::string flag_words(const Scene& scene, std::string_view flag, std::span<const Selection> selections) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,9 +30,19 @@ template <class Test>
 // Those with area.
 [[nodiscard]] std::vector<Selection> all_patches(const Scene& scene);
 
+[[nodiscard]] inline Selection selection_of(const Scene& scene, FaceId face) {
+  return {scene.face(face).patch, face, scene.id()};
+}
 // The faces as selections: a patch if all its faces with area are among them, else its faces. In the order of the
 // scene, each once. `faces` without area are left out.
 [[nodiscard]] std::vector<Selection> selections_of(const Scene& scene, std::vector<FaceId> faces);
+
+// Of its faces: an estimate.
+[[nodiscard]] double area_of(const Scene& scene, const Selection& selection);
+[[nodiscard]] std::set<FaceId> faces_of(const Scene& scene, std::span<const Selection> selections);
+
+// Its name in quotation marks, for messages; not more than is easily read.
+[[nodiscard]] std::string quoted(const Scene& scene, const Selection& selection);
 
 // "--flip a,b", for a shell. A name with a comma gets a flag of its own. Empty if there is no selection, or if there
 // are more than anybody wants to type.

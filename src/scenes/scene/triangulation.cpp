@@ -18,6 +18,7 @@
 #include "kernel/vec.h"
 #include "scene/planar_region.h"
 #include "scene/scene.h"
+#include "scene/selections.h"
 
 namespace exactff {
 
@@ -588,18 +589,19 @@ Scene triangulated(const Scene& scene) {
   for (const Vec3& vertex : scene.vertices()) builder.add_vertex(vertex);
   for (const Material& material : scene.materials()) builder.add_material(material);
   for (const Patch& patch : scene.patches()) (void)builder.patch(patch.name);
-  std::vector<Selection> transparent;
+  std::vector<FaceId> transparent;
   std::uint32_t count = 0;
   for (const Piece& piece : scene.pieces()) {
     const Face& face = scene.face(piece.face);
     for (std::vector<std::uint32_t>& triangle : triangles_of(scene, piece)) {
-      if (face.transparent) transparent.push_back({face.patch, static_cast<FaceId>(count)});
+      if (face.transparent) transparent.push_back(static_cast<FaceId>(count));
       builder.add_face(face.patch, face.material, {triangle});
       copy_texture(scene, piece.face, {std::move(triangle)}, builder);
       ++count;
     }
   }
-  return builder.build().with_transparent(transparent);
+  const Scene made = builder.build();
+  return made.with_transparent(selections_of(made, std::move(transparent)));
 }
 
 }  // namespace exactff

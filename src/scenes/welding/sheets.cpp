@@ -7,6 +7,7 @@
 #include "kernel/numbers.h"
 #include "kernel/vec.h"
 #include "scene/scene.h"
+#include "scene/selections.h"
 #include "scene/solids.h"
 
 namespace exactff {
@@ -86,9 +87,7 @@ void SheetFinder::look_around(std::size_t face, const Vec3& x) {
 }
 
 void SheetFinder::add(std::size_t face, std::size_t other, double apart) {
-  const auto of = [&](std::size_t f) {
-    return Selection{scene_.faces()[f].patch, static_cast<FaceId>(f), scene_.id()};
-  };
+  const auto of = [&](std::size_t f) { return selection_of(scene_, static_cast<FaceId>(f)); };
   const auto [low, high] = std::minmax(face, other);
   const auto patches = std::minmax({of(low).patch, of(high).patch});
   const auto [known, is_new] = found_.try_emplace(patches, WeldedScene::Sheets{of(low), of(high), apart});

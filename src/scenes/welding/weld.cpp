@@ -531,7 +531,7 @@ WeldedScene built(const Scene& scene, Welding& welding, double length) {
   std::vector<std::uint32_t> vertex(scene.vertices().size(), 0);
   for (const Id corner : welding.live()) vertex[corner] = builder.add_vertex(welding.at(corner));
   std::vector<FaceId> vanished;
-  std::vector<Selection> flipped, transparent;
+  std::vector<FaceId> flipped, transparent;
   std::vector<std::vector<Id>> before, now;  // corners of faces
   for (std::size_t f = 0; f < scene.faces().size(); ++f) {
     const Face& face = scene.faces()[f];
@@ -541,7 +541,7 @@ WeldedScene built(const Scene& scene, Welding& welding, double length) {
       vanished.push_back(static_cast<FaceId>(f));
       continue;
     }
-    const Selection made{face.patch, static_cast<FaceId>(now.size())};
+    const auto made = static_cast<FaceId>(now.size());
     now.push_back(corner_set(rings));
     before.push_back(corner_set(face.rings));
     for (Id& corner : before.back()) corner = places(scene)[corner];
@@ -566,7 +566,7 @@ WeldedScene built(const Scene& scene, Welding& welding, double length) {
     text::refuse("welded within " + text::shortest(length) + ", nothing is left of the scene",
                  "all of its faces are no larger than that", "give a smaller length; `exactff info` advises one");
   }
-  WeldedScene result{builder.build().with_flipped(flipped).with_transparent(transparent),
+  WeldedScene result{with_faces(builder.build(), std::move(flipped), std::move(transparent)),
                      welding.before().size(),
                      welding.live().size(),
                      welding.largest_move(),

@@ -310,23 +310,22 @@ ViewFactor of_whole(ViewFactor f, const PreparedPatch& from, const PreparedPatch
 
 struct Pairs::Patches {
   // Selections of the given scene, in a copy of it.
-  Patches(const Scene& given, std::span<const Selection> from, std::span<const Selection> to, Columns what)
+  Patches(const Scene& given, std::span<const Selection> from, std::span<const Selection> to,
+          std::span<const Columns> kinds)
       : moved(near_origin(given)), scene(moved ? *moved : given), seen(scene) {
-    rows = prepare(given, from, Columns::kPatches);
-    columns = prepare(given, to, what);
+    for (const Selection& patch : from) rows.push_back(prepare(given, patch, Columns::kPatches));
+    for (std::size_t j = 0; j < to.size(); ++j) {
+      columns.push_back(prepare(given, to[j], kinds.empty() ? Columns::kPatches : kinds[j]));
+    }
   }
 
-  std::vector<const PreparedPatch*> prepare(const Scene& given, std::span<const Selection> patches, Columns what) {
-    std::vector<const PreparedPatch*> result;
-    for (const Selection& patch : patches) {
-      (void)given.faces_of(patch);  // throws if it is of another scene
-      std::unique_ptr<const PreparedPatch>& known = prepared[key_of(patch)];
-      if (known == nullptr) {
-        known = std::make_unique<const PreparedPatch>(scene, Selection{patch.patch, patch.face}, what);
-      }
-      result.push_back(known.get());
+  const PreparedPatch* prepare(const Scene& given, const Selection& patch, Columns what) {
+    (void)given.faces_of(patch);  // throws if it is of another scene
+    std::unique_ptr<const PreparedPatch>& known = prepared[key_of(patch)];
+    if (known == nullptr) {
+      known = std::make_unique<const PreparedPatch>(scene, Selection{patch.patch, patch.face, scene.scene.id()}, what);
     }
-    return result;
+    return known.get();
   }
 
   std::optional<Scene> moved;
@@ -338,10 +337,10 @@ struct Pairs::Patches {
 };
 
 Pairs::Pairs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
-             const ViewFactorOptions& options, Columns what)
+             const ViewFactorOptions& options, std::span<const Columns> kinds)
     : options_(options) {
   check_accuracy(options.accuracy);
-  patches_ = std::make_unique<const Patches>(scene, from, to, what);
+  patches_ = std::make_unique<const Patches>(scene, from, to, kinds);
   std::map<std::pair<Key, Key>, std::size_t> known;
   for (std::size_t e = 0; e < from.size() * to.size(); ++e) {
     const Ends ends = ends_of(e);

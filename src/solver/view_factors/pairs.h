@@ -17,9 +17,10 @@ namespace exactff::view_factors {
 
 class Pairs {
  public:
-  // Throws what view_factor throws. Keeps a reference to the scene.
+  // Throws what view_factor throws. Keeps a reference to the scene. `kinds`, of each column: by default, all are
+  // patches of the scene.
   Pairs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
-        const ViewFactorOptions& options, Columns what = Columns::kPatches);
+        const ViewFactorOptions& options, std::span<const Columns> kinds = {});
   ~Pairs();
   Pairs(const Pairs&) = delete;
   Pairs& operator=(const Pairs&) = delete;

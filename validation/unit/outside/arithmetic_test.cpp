@@ -7,7 +7,6 @@
 #include <xmmintrin.h>
 #endif
 
-#include "check/images.h"
 #include "check/report.h"
 #include "exactff/adaptive.h"
 #include "exactff/check.h"

@@ -89,9 +89,9 @@ TEST(Misuse, ASelectionWithoutSuchIdsIsRefused) {
       expect_refused(words, [&] { (void)method->prepare(scene)->prepare_source(selection); });
     }
   };
-  all_take({PatchId{3}, {}}, "there is no patch 3");
-  all_take({PatchId{0}, FaceId{3}}, "there is no face 3");
-  all_take({PatchId{0}, FaceId{1}}, "face 1 does not belong to patch 'floor'");
+  all_take({PatchId{3}, {}, scene.id()}, "there is no patch 3");
+  all_take({PatchId{0}, FaceId{3}, scene.id()}, "there is no face 3");
+  all_take({PatchId{0}, FaceId{1}, scene.id()}, "face 1 does not belong to patch 'floor'");
 }
 
 TEST(Misuse, WhatAnotherSceneMadeIsRefused) {
@@ -109,7 +109,8 @@ TEST(Misuse, WhatAnotherSceneMadeIsRefused) {
                  [&] { (void)other_solver.form_factor(kBelow, prepared, 1.0, {}); });
   const Scene flipped = scene.with_flipped(lamp);
   expect_refused("the source belongs to another scene", [&] { (void)exact_form_factor(flipped, kBelow, source); });
-  EXPECT_NO_THROW((void)ExactSource(other, {lamp.patch, lamp.face}));  // ids that do not exist in the scene
+  EXPECT_NO_THROW((void)ExactSource(other, {lamp.patch, lamp.face, other.id()}));
+  expect_refused("the selection belongs to another scene", [&] { (void)ExactSource(other, Selection{}); });
 }
 
 TEST(Misuse, AReceiverOnAFaceThatIsNotThereIsRefused) {

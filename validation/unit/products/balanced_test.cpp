@@ -17,7 +17,7 @@ namespace {
 
 std::vector<Selection> patches(std::size_t count) {
   std::vector<Selection> all;
-  for (std::size_t i = 0; i < count; ++i) all.push_back({static_cast<PatchId>(i), {}});
+  for (std::size_t i = 0; i < count; ++i) all.push_back({static_cast<PatchId>(i), {}, SceneId{}});
   return all;
 }
 

@@ -3,7 +3,7 @@
 
 #include "exactff/exact.h"
 #include "exactff/scene_files.h"
-#include "matrix/row_facts.h"
+#include "matrix/rows.h"
 #include "support/shapes.h"
 #include "support/test.h"
 

@@ -1,7 +1,7 @@
 // Images of other programs: files, whole and damaged; visible points; the values of their pixels; comparisons.
 #include <cstring>
 
-#include "check/images.h"
+#include "check/report.h"
 #include "exactff/error.h"
 #include "exactff/exr.h"
 #include "exactff/scene_files.h"

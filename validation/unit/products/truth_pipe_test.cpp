@@ -2,7 +2,7 @@
 #include "exactff/table.h"
 #include "support/shapes.h"
 #include "support/test.h"
-#include "truth/unit_normal.h"
+#include "truth/columns.h"
 
 namespace exactff {
 namespace {

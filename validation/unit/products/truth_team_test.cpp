@@ -7,7 +7,7 @@
 #include "jobs/team.h"
 #include "support/test.h"
 #include "support/thread_team.h"
-#include "truth/team.h"
+#include "truth/rows.h"
 #include "unit/products/truth_support.h"
 
 namespace exactff::truth {

@@ -283,10 +283,11 @@ TEST_F(SeveralFiles, AreWhatOneFileOfTheirLinesIs) {
   ASSERT_EQ(joined.faces().size(), whole.faces().size());
   const Receiver receiver{.point = {1.5, 0.5, 0.25}, .normal = {0.1, 0.2, 1}, .on = {}, .id = {}};
   for (std::size_t p = 0; p < 3; ++p) {
-    const Selection patch{static_cast<PatchId>(p), {}};
+    const auto id = static_cast<PatchId>(p);
     for (const Engine engine : {Engine::kEdges, Engine::kBoolean}) {
-      EXPECT_EQ(exact_form_factor(joined, receiver, ExactSource(joined, patch), {.engine = engine}).value,
-                exact_form_factor(whole, receiver, ExactSource(whole, patch), {.engine = engine}).value);
+      EXPECT_EQ(
+          exact_form_factor(joined, receiver, ExactSource(joined, {id, {}, joined.id()}), {.engine = engine}).value,
+          exact_form_factor(whole, receiver, ExactSource(whole, {id, {}, whole.id()}), {.engine = engine}).value);
     }
   }
   EXPECT_EQ(joined.texture(FaceId{0}).size(), 4U);

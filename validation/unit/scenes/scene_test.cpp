@@ -26,8 +26,8 @@ constexpr PatchId kWall{0}, kWallOne{1}, kLamp{2}, kMixed{3};
 
 TEST(SceneNames, AnExactNameWins) {
   const Scene scene = rooms().build();
-  EXPECT_EQ(scene.select("wall:1"), (Selection{kWallOne, {}}));
-  EXPECT_EQ(scene.select("wall:1:1"), (Selection{kWallOne, FaceId{2}}));
+  EXPECT_EQ(scene.select("wall:1"), (Selection{kWallOne, {}, scene.id()}));
+  EXPECT_EQ(scene.select("wall:1:1"), (Selection{kWallOne, FaceId{2}, scene.id()}));
   ASSERT_EQ(scene.warnings().size(), 2U);
   EXPECT_EQ(scene.warnings()[1].message(),
             "rooms.obj:10: face 'wall:1' cannot be named (a patch has the same name, and patch names take precedence); "
@@ -115,8 +115,8 @@ TEST(SceneMaterials, SourceRadiosityIsKeOrOne) {
 TEST(SceneFaces, IgnoredFacesAreKeptButStandForNothing) {
   const Scene scene = rooms().build();
   EXPECT_EQ(scene.face(FaceId{1}).shape, FaceShape::kZeroArea);
-  EXPECT_EQ(scene.faces_of({kWall, {}}), (std::vector<FaceId>{FaceId{0}, FaceId{3}}));
-  EXPECT_TRUE(scene.faces_of({kWall, FaceId{1}}).empty());
+  EXPECT_EQ(scene.faces_of({kWall, {}, scene.id()}), (std::vector<FaceId>{FaceId{0}, FaceId{3}}));
+  EXPECT_TRUE(scene.faces_of({kWall, FaceId{1}, scene.id()}).empty());
   EXPECT_TRUE(scene.pieces_of(FaceId{1}).empty());
   EXPECT_EQ(scene.warnings()[0].message(), "rooms.obj:11: face 'wall:2' has no area and is ignored");
 }
@@ -135,7 +135,7 @@ TEST(SceneBuilder, SkipsBadFacesOnRequest) {
             "ambiguous); split it into simple polygons, or skip bad faces with --skip-bad-faces");
   const Scene scene = with_bow_tie(BadFaces::kSkip);
   EXPECT_EQ(scene.face(FaceId{0}).shape, FaceShape::kSkipped);
-  EXPECT_EQ(scene.faces_of({PatchId{0}, {}}), std::vector<FaceId>{FaceId{1}});
+  EXPECT_EQ(scene.faces_of({PatchId{0}, {}, scene.id()}), std::vector<FaceId>{FaceId{1}});
   ASSERT_EQ(scene.warnings().size(), 1U);
   EXPECT_EQ(scene.warnings()[0].suggestion, "the face is skipped");
   EXPECT_EQ(complaint([&] { (void)scene.select("bow:1"); }),

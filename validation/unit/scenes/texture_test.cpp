@@ -83,14 +83,17 @@ TEST(Texture, CornersKeepTheirsInAllChangesOfFaces) {
   for (const Scene& scene : {awkward(), textured(models::make_scene("room")), textured(models::make_scene("teapot"))}) {
     expect_affine(scene, 2, "as built");
     std::vector<Selection> all;
-    for (const Face& face : scene.faces()) all.push_back({face.patch, {}});
-    expect_affine(scene.with_flipped(all), 2, "flipped");
-    expect_affine(scene.with_flipped(all).with_transparent(all), 2, "transparent");
+    for (const Face& face : scene.faces()) all.push_back({face.patch, {}, scene.id()});
+    const Scene flipped = scene.with_flipped(all);
+    expect_affine(flipped, 2, "flipped");
+    std::vector<Selection> of_flipped = all;
+    for (Selection& one : of_flipped) one.scene = flipped.id();
+    expect_affine(flipped.with_transparent(of_flipped), 2, "transparent");
     expect_affine(triangulated(scene), 2, "triangulated");
     expect_affine(with_patches(scene, scene_options("parts")), 2, "parts");
     const double length = std::sqrt(total_area(summarise(scene))) / 9.0;
     expect_affine(divided(scene, length).scene, 2, "divided");
-    expect_affine(divided(scene.with_flipped(all), length).scene, 2, "flipped and divided");
+    expect_affine(divided(flipped, length).scene, 2, "flipped and divided");
     const SceneFiles files = scene_files(scene, "s.obj");
     expect_affine(read_scene(files.files.back().bytes, "s.obj"), 1, "written and read");
     EXPECT_HOLDS(files.losses.front().message(), "set 1");
