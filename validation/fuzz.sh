@@ -42,7 +42,7 @@ run() {
 export -f run
 export seconds build work findings
 
-targets=(solver view cells obj gltf ply stl off view3d receivers exr check study truth_journal)
+targets=(solver view cells obj gltf ply stl off view3d receivers exr check truth_journal)
 run_program() {
   mkdir "$work/program"
   rm -rf "$findings"/program-*
@@ -83,5 +83,5 @@ if [ -e "$work/program.failed" ]; then
   status=1
 fi
 printf '%-14s %10s %10s %10s   %s\n' program "$(awk '/cases of seed/ { print $1 }' "$work/program.log")" - - "$result"
-grep -A 2 FINDING "$work/program.log" || true
+grep -A 4 FINDING "$work/program.log" || true
 exit "$status"
