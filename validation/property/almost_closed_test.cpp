@@ -1,29 +1,11 @@
 // Rooms from CAD: faces that share no corners, each corner moved by 1e-15 to 3e-2. Their view factors are judged by
 // those of the room that was meant, as far as moved corners can change them, and by means of point factors.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "exactff/exact.h"
-#include "exactff/receiver.h"
-#include "exactff/view.h"
-#include "exactff/view_factors.h"
-#include "generate/plain_scene.h"
-#include "generate/random.h"
 #include "property/closed_rooms.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 #include "view_factors/pairs.h"
 
 namespace exactff::validation {
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 double perimeter_of_all(const PlainScene& scene) {
   double sum = 0.0;

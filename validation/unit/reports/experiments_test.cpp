@@ -1,7 +1,6 @@
 // The experiments of the report, each on a scene that is small enough for a test, and their shared helpers.
 #include "experiments/experiments.h"
 
-#include "exactff/scene_files.h"
 #include "kernel/statistics.h"
 #include "page/gnuplot.h"
 #include "support/test.h"
@@ -13,18 +12,12 @@ const Hooks kNoHooks;
 
 // A floor and a wall that meet, and a lamp above the floor.
 MeshingScene corner() {
-  SceneBuilder builder;
-  const MaterialId grey = builder.add_material({.name = "grey", .reflectance = {0.75, 0.5, 0.25}});
-  const MaterialId lamp = builder.add_material({.name = "lamp", .reflectance = {}, .radiosity = {4.0, 4.0, 4.0}});
-  const auto add = [&](const char* name, MaterialId material, const std::vector<Vec3>& ring) {
-    std::vector<std::uint32_t> corners;
-    for (const Vec3& corner : ring) corners.push_back(builder.add_vertex(corner));
-    builder.add_face(builder.patch(name), material, {corners});
-  };
-  add("floor", grey, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
-  add("wall", grey, {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}});
-  add("lamp", lamp, {{0.375, 0.375, 1}, {0.375, 0.625, 1}, {0.625, 0.625, 1}, {0.625, 0.375, 1}});
-  return {builder.build(), {.eye = {4, 1.5, 3}, .look = {0.25, 0.5, 0.25}, .up = {0, 0, 1}, .fov = 22.0}};
+  const Rgb grey{0.75, 0.5, 0.25};
+  PlainScene plain;
+  add(plain, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, grey, {});
+  add(plain, "wall", {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}}, grey, {});
+  add(plain, "lamp", {{0.375, 0.375, 1}, {0.375, 0.625, 1}, {0.625, 0.625, 1}, {0.625, 0.375, 1}}, {}, {4, 4, 4});
+  return {generate::build(plain), {.eye = {4, 1.5, 3}, .look = {0.25, 0.5, 0.25}, .up = {0, 0, 1}, .fov = 22.0}};
 }
 
 MeshingSize small_meshing() { return {.parts = {1, 2, 4, 8}, .pixels = 16}; }

@@ -4,13 +4,6 @@
 #include <csignal>
 #include <thread>
 
-#include "exactff/adaptive.h"
-#include "exactff/exact.h"
-#include "exactff/jobs.h"
-#include "exactff/methods.h"
-#include "exactff/models.h"
-#include "exactff/receiver.h"
-#include "exactff/view.h"
 #include "files/parallel.h"
 #include "support/test.h"
 #include "unit/outside/sanitized.h"

@@ -1,13 +1,8 @@
 // How fast point factors change, judged by the exact solver.
 #include <gmpxx.h>
 
-#include "exactff/exact.h"
-#include "exactff/models.h"
-#include "exactff/view.h"
 #include "kernel/ball.h"
 #include "kernel/vec.h"
-#include "support/random_scenes.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "unit/solver/factor_at.h"
 #include "view_factors/cell.h"
