@@ -1,21 +1,14 @@
 // The tools around fuzzing: bytes give scenes, sound scenes keep promises, and a failure is reduced to a small case.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "fuzz/scene_bytes.h"
 #include "fuzz/scene_promises.h"
 #include "support/case_file.h"
 #include "support/minimise.h"
-#include "support/program.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {
 
 using generate::PlainPatch;
-using generate::PlainScene;
-using generate::Random;
 
 std::vector<std::uint8_t> random_bytes(Random& random) {
   std::vector<std::uint8_t> bytes(20 + random.below(120));
