@@ -29,7 +29,7 @@ std::string any_patch(const PlainScene& scene, Random& random) {
 // edges is at most their length times how far corners move.
 TEST(AlmostClosedRooms, HaveTheFactorsOfTheRoomThatWasMeant) {
   std::size_t cells = 0, meant_cells = 0, judged = 0, slow = 0;
-  for (std::uint64_t s = 0; s < scaled_count(40); ++s) {
+  for (std::uint64_t s = 0; s < scaled_count(20); ++s) {
     Random random(seed_of(s));
     const PlainScene room = random_plain_room(random);
     const double moved = std::pow(10.0, -15.0 + 10.0 * random.unit());
@@ -80,7 +80,7 @@ TEST(AlmostClosedRooms, CountWhatIsLeftOut) {
 TEST(AlmostClosedRooms, HoldMeansOfPoints) {
   constexpr std::size_t kPoints = 1 << 11;
   double largest = 0.0;
-  for (std::uint64_t s = 0; s < scaled_count(10); ++s) {
+  for (std::uint64_t s = 0; s < scaled_count(6); ++s) {
     Random random(seed_of(s));
     PlainScene room = random_plain_room(random);
     if (random.one_in(3)) add_thing(room, box({0.25, 0.25, 0.0}, {0.75, 0.5, 0.5}));
