@@ -35,7 +35,6 @@ measure() {
 rm -rf "$folder/results"
 mkdir -p "$folder/results"
 measure ratios '^(visible|certified|rays)/.*/1000$'
-measure cornell '^cornell/'
 measure view '^view/' --benchmark_repetitions=3
 measure growth '^certified/edges/.*/(100|10000)$' --benchmark_repetitions=3
 if ! $quick; then

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Fuzzes every reader, the journals, the exact solver and the whole program.
+# Fuzzes every reader, the exact solver and the whole program.
 #
 #   fuzz.sh [SECONDS]  for each target, default 60
 #
 # Builds build/clang: Clang, AddressSanitizer, UndefinedBehaviorSanitizer and libFuzzer. EXACTFF_BUILD names another
 # build folder. Each target starts from data/fuzz/TARGET and a fresh working corpus; fuzz_solver, fuzz_view and
-# fuzz_cells share one. Two targets run at a time. Ends with a summary; the exit code is 1 if there is a finding. A
+# fuzz_factors share one. Two targets run at a time. Ends with a summary; the exit code is 1 if there is a finding. A
 # finding of fuzz_solver is shrunk to a case that becomes a test when it is moved into data/regression.
 #
 # For the whole program there is no libFuzzer target: fuzz_program generates its own cases and keeps one of each kind of
@@ -30,11 +30,10 @@ mkdir -p "$work/temporary" "$findings"
 
 run() {
   local target=$1 corpus=$1
-  case "$target" in view | cells) corpus=solver ;; esac
+  case "$target" in view | factors) corpus=solver ;; esac
   local corpora=("$work/$1" "data/fuzz/$corpus") options=(-max_total_time="$seconds" -max_len=4096 -timeout=60
     -rss_limit_mb=2048 -report_slow_units=60 -print_final_stats=1 -artifact_prefix="$findings/$1-")
   mkdir "$work/$target"
-  [ ! -f "validation/fuzz/$target.dict" ] || options+=(-dict="validation/fuzz/$target.dict")
   rm -f "$findings/$target"-*
   TMPDIR=$work/temporary "$build/fuzz_$target" "${options[@]}" "${corpora[@]}" > "$work/$target.log" 2>&1 ||
     touch "$work/$target.failed"
@@ -42,7 +41,7 @@ run() {
 export -f run
 export seconds build work findings
 
-targets=(solver view cells obj gltf ply stl off view3d receivers exr check study truth_journal)
+targets=(solver view factors obj gltf ply stl off view3d receivers exr check)
 run_program() {
   mkdir "$work/program"
   rm -rf "$findings"/program-*
@@ -83,5 +82,5 @@ if [ -e "$work/program.failed" ]; then
   status=1
 fi
 printf '%-14s %10s %10s %10s   %s\n' program "$(awk '/cases of seed/ { print $1 }' "$work/program.log")" - - "$result"
-grep -A 2 FINDING "$work/program.log" || true
+grep -A 4 FINDING "$work/program.log" || true
 exit "$status"

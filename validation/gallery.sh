@@ -48,9 +48,4 @@ map=(data/scenes/lightmap_room.obj --lightmap 512x512)
   --svg "$out/teapot_outline.svg" > /dev/null
 "$program" point data/scenes/blinds_room.obj --at 3 0 3.3 --normal 0 1 0 --source window --method adaptive:eps_B=0.01 --plain \
   --svg "$out/blinds_leaves.svg" > /dev/null
-if command -v xvfb-run > /dev/null; then  # packages xvfb, xauth and python3-vtk9: Debian's VTK draws by X
-  "$program" truth "${box[0]}" --on floor,ceiling,back,left,right,short_block,tall_block --grid 256x256 -o "$cells/map.csv" \
-    --vtk "$cells/map.vtp"
-  xvfb-run -a python3 validation/vtk/draw_cornell_box.py "$cells/map.vtp" "$out/cornell_box_map.png"
-fi
 ls -l "$out"

@@ -11,7 +11,6 @@ int main(int argc, char** argv) try {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   exactff::bench::add_engines();
   exactff::bench::add_rays();
-  exactff::bench::add_cornell();
   exactff::bench::add_view();
   return benchmark::RunSpecifiedBenchmarks() > 0 ? 0 : 2;  // 0: the filter matches nothing
 } catch (const std::exception& error) {

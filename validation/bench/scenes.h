@@ -46,7 +46,6 @@ void add_maker_for_every_scene(const std::string& subject, const MakerBody& body
 // What is measured. Each registers its benchmarks; names are SUBJECT/SCENE/N.
 void add_engines();  // certified/ENGINE, visible/ENGINE; memory, meaningful only in a process of its own
 void add_rays();     // rays/coherent, rays/incoherent
-void add_cornell();  // cornell/CLASS
 void add_view();     // view/loop, view/sweep
 
 }  // namespace exactff::bench

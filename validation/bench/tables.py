@@ -15,7 +15,7 @@ runs, sound = {}, True
 for path in sys.argv[1:]:
     with open(path, encoding="utf-8") as file:
         for run in json.load(file)["benchmarks"]:
-            name = re.sub("/(iterations:[0-9]+|manual_time|real_time)", "", run["run_name"])  # how it ran
+            name = re.sub("/(iterations:[0-9]+|real_time)", "", run["run_name"])  # how it ran
             if run.get("error_occurred"):
                 print(f"{name}: {run['error_message']}", file=sys.stderr)
                 sound = False
@@ -67,10 +67,6 @@ for scene in SCENES:
 if figure("memory/sparse/1000000"):
     print(f"\nA million random triangles: {text(ratio(ms('certified/edges/sparse/1000000'), 1000))} s and "
           f"{text(figure('memory/sparse/1000000', 'peak_mib'))} MiB, the scene included.")
-
-head("Cornell box, light to a floor grid of 32 x 32: the certified value, median over receivers.", "receivers", "count", "us")
-for kind in "unoccluded", "partly":
-    row(kind, figure(f"cornell/{kind}", "receivers"), figure(f"cornell/{kind}", "real_time"))
 
 head("All faces from one point, ms: one by one, and in one sweep.", "scene", "faces seen", "loop", "sweep", "loop / sweep")
 for scene in "karkanis/500 karkanis/10000 covered/10000 room/1600".split():

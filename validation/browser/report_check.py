@@ -1,18 +1,15 @@
 #!/usr/bin/env python3
 """Opens a report in headless Chromium and checks that a reader gets to see it.
 
-Usage: report_check.py REPORT.html [--tallest PIXELS] [--screenshots DIR] [--chromium FILE] [--chromedriver FILE]
+Usage: report_check.py REPORT.html [--tallest PIXELS] [--chromium FILE] [--chromedriver FILE]
 
 Every chapter opens with a verdict; every figure has drawn; nothing is fetched; the page reads on a phone and on a screen, light and dark, and in print; its
-references resolve. Screenshots of the whole page are left in DIR. Needs Debian's chromium, chromium-driver and
-python3-selenium; no network. Exit code 0: all is well; 1: complaints, one a line; 2: the check could not be made.
+references resolve. Needs Debian's chromium, chromium-driver and python3-selenium; no network. Exit code 0: all is well; 1: complaints, one a line; 2: the check could not be made.
 """
 
 import argparse
-import base64
 import contextlib
 import json
-import math
 import os
 import pathlib
 import shutil
@@ -30,7 +27,6 @@ LEAST_RUNNING_TEXT = 14  # pixels
 LEAST_LETTERING = 8  # pixels, in figures on a phone
 BODY_CONTRAST, OTHER_CONTRAST, FIGURE_CONTRAST = 7, 4.5, 3  # WCAG 2.2: text at AAA, at AA, and graphics
 MARK_CONTRAST = 2  # Okabe and Ito's light colours have 2.2 on white
-TALLEST_PICTURE = 8000  # pixels; more than Chromium can draw at once is saved in parts
 
 IN_PAGE = pathlib.Path(__file__).with_name("in_page.js").read_text(encoding="utf-8")
 
@@ -75,13 +71,9 @@ class Reader:
         self.log()  # remove the files of earlier pages
         driver.get(self.page.as_uri())
 
-    def resize(self, height=800):
-        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
-            "width": self.width, "height": height, "deviceScaleFactor": 1, "mobile": self.width == PHONE})
-
     def view(self, width, scheme="light", medium="screen"):
-        self.width = width
-        self.resize()
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
+            "width": width, "height": 800, "deviceScaleFactor": 1, "mobile": width == PHONE})
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {
             "media": medium, "features": [{"name": "prefers-color-scheme", "value": scheme}]})
         self.condition = medium if medium == "print" else f"{width} px, {scheme}"
@@ -118,23 +110,6 @@ class Reader:
         names = sorted(pathlib.Path(link).name for link in missing)
         self.complaints += [f"a link leads to {name}, which is not there" for name in names]
 
-    def pictures(self):
-        """The whole page, in parts where it is too long for one picture: PNG in base64."""
-        height = math.ceil(self.driver.execute_cdp_cmd("Page.getLayoutMetrics", {})["cssContentSize"]["height"])
-        parts = []
-        for top in range(0, height, TALLEST_PICTURE):  # a window as tall as the part is drawn faster than a taller one
-            self.resize(min(TALLEST_PICTURE, height - top))
-            self.driver.execute_script(f"scrollTo(0, {top})")
-            parts.append(self.driver.execute_cdp_cmd("Page.captureScreenshot", {"format": "png"})["data"])
-        self.resize()
-        return parts
-
-
-def save(pictures, folder, name):
-    for part, picture in enumerate(pictures, 1):
-        file = folder / (f"{name}.png" if len(pictures) == 1 else f"{name}-{part}.png")
-        file.write_bytes(base64.b64decode(picture))
-
 
 def check_layout(reader, width, scheme, medium="screen"):
     reader.view(width, scheme, medium)
@@ -145,7 +120,7 @@ def check_layout(reader, width, scheme, medium="screen"):
     reader.check("marks_are_told_from_paper", MARK_CONTRAST)
 
 
-def check_folded(reader, tallest, screenshots):
+def check_folded(reader, tallest):
     """The page as it opens, before a reader unfolds anything; printed, it is unfolded."""
     reader.check("chapters_open_with_a_verdict", anywhere=True)
     reader.view(SCREEN)
@@ -154,29 +129,27 @@ def check_folded(reader, tallest, screenshots):
     for width in (SCREEN, PHONE):
         reader.view(width)
         reader.check("no_column_is_cut")
-        if screenshots:
-            save(reader.pictures(), screenshots, f"{'phone' if width == PHONE else 'screen'}-folded")
     reader.view(PAPER, medium="print")
     reader.check("everything_is_unfolded")
 
 
-def check_report(driver, page, screenshots=None, tallest=None, enough=lambda complaints: False):
+def check_report(driver, page, tallest=None, enough=lambda complaints: False):
     """All complaints about the page, each once. `tallest`: its height on a screen as it opens, in pixels.
 
     `enough`: asked between the steps; the check ends early where it returns true.
     """
     reader = Reader(driver, page)
-    for _ in steps(reader, screenshots, tallest):
+    for _ in steps(reader, tallest):
         if enough(reader.complaints):
             break
     return list(dict.fromkeys(reader.complaints))
 
 
-def steps(reader, screenshots, tallest):
+def steps(reader, tallest):
     """The check, which pauses after each step."""
     reader.check_requests()
     yield
-    check_folded(reader, tallest, screenshots)
+    check_folded(reader, tallest)
     yield
     reader.unfold()
     reader.check("page_is_described", anywhere=True)
@@ -195,8 +168,6 @@ def steps(reader, screenshots, tallest):
             reader.check("no_column_is_cut")
             reader.check("no_mark_covers_a_label")
             yield
-        if screenshots:
-            save(reader.pictures(), screenshots, f"{'phone' if width == PHONE else 'screen'}-{scheme}")
     for scheme in ("light", "dark"):  # of the reader's system; paper is white
         check_layout(reader, PAPER, scheme, "print")
         yield
@@ -208,7 +179,6 @@ def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("report", type=pathlib.Path, metavar="REPORT.html")
     parser.add_argument("--tallest", type=int, metavar="PIXELS", help="height of the page on a screen, as it opens")
-    parser.add_argument("--screenshots", type=pathlib.Path, metavar="DIR", help="where pictures of the page are left")
     add_browser_arguments(parser)
     return parser.parse_args()
 
@@ -222,12 +192,8 @@ def main():
     arguments = parse_arguments()
     if not arguments.report.is_file():
         sys.exit(f"{arguments.report}: no such file")
-    if arguments.screenshots:
-        arguments.screenshots.mkdir(parents=True, exist_ok=True)
-        for old in arguments.screenshots.glob("*.png"):
-            old.unlink()
     with browser(arguments.chromium, arguments.chromedriver) as driver:
-        complaints = check_report(driver, arguments.report, arguments.screenshots, arguments.tallest)
+        complaints = check_report(driver, arguments.report, arguments.tallest)
     for complaint in complaints:
         print(f"{arguments.report.name}: {complaint}")
     print(f"{arguments.report}: " + (f"{len(complaints)} complaints" if complaints else "reads well"))

@@ -1,21 +1,11 @@
 // The first face that a ray meets, compared with a search over all faces in rational numbers. It shares only the
 // vertices and rings of the scene with the library: no pieces, no tree, no filter, another test for inside.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <optional>
-
-#include "exactff/models.h"
-#include "exactff/render.h"
-#include "exactff/scene_files.h"
 #include "support/oracle_faces.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {
 
-using generate::Random;
 using render::Hit;
 using render::Ray;
 

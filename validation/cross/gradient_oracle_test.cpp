@@ -1,24 +1,14 @@
 // Compares derivatives with slopes of the oracle, which shares nothing with the solver and steps by 2^-400 in rational
 // numbers: one-sided ones by the receiver's point, also at kinks, and those by vertices.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-
-#include "exactff/exact.h"
 #include "kernel/ball.h"
 #include "support/oracle.h"
 #include "support/oracle_check.h"
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 #include "support/transform.h"
 
 namespace exactff::validation {
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 Vec3 direction(Random& random) {
   for (;;) {

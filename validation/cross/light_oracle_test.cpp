@@ -1,11 +1,8 @@
 // The light of several sources, compared with the oracle's form factors: sums of rational bounds.
 #include <gmpxx.h>
-#include <gtest/gtest.h>
 
-#include "exactff/models.h"
-#include "exactff/render.h"
-#include "exactff/scene_files.h"
 #include "support/oracle.h"
+#include "support/test.h"
 #include "whole_view/light.h"
 
 namespace exactff::validation {

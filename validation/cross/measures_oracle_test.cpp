@@ -1,22 +1,13 @@
 // Other measures than the form factor, compared with an algorithm that shares nothing with the solver: the same double
 // and zero flag by both engines.
-#include <gtest/gtest.h>
-
-#include <array>
-
 #include "support/decimal.h"
 #include "support/oracle.h"
 #include "support/oracle_check.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 #include "support/view_scenes.h"
 
 namespace exactff::validation {
-
-static void PrintTo(const RandomFamily& family, std::ostream* out) { *out << family.name; }
-
 namespace {
-
-using generate::Random;
 
 // Upwards along the normal, against it, across it, along an axis, or anywhere on a lattice.
 Vec3 random_up(Random& random, const Vec3& n) {

@@ -1,15 +1,10 @@
 // exactff truth and matrix under mpirun: four processes, independent of the number of cores.
-#include <gtest/gtest.h>
-
 #include <chrono>
 #include <csignal>
-#include <filesystem>
-#include <fstream>
 #include <iterator>
-#include <sstream>
 #include <thread>
 
-#include "support/program.h"
+#include "support/test.h"
 
 namespace exactff {
 namespace {

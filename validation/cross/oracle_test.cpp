@@ -3,28 +3,17 @@
 //
 // EXACTFF_TEST_SCALE multiplies the number of scenes, EXACTFF_TEST_SEED selects other scenes, and EXACTFF_TEST_KEEP
 // names a directory for the minimised cases of failures.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <fstream>
 
 #include "generate/families.h"
 #include "support/case_file.h"
 #include "support/minimise.h"
 #include "support/oracle_check.h"
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 
 namespace exactff::validation {
-
-static void PrintTo(const RandomFamily& family, std::ostream* out) { *out << family.name; }
-
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 // The oracle itself, on scenes with known values.
 TEST(Oracle, AgreesWithTheReferenceCases) {

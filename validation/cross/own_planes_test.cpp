@@ -4,28 +4,15 @@
 // it, fronts on either side; or a bent polygon beside the scene with its triangles written out. Judges are the oracle,
 // the same scene without the faces in the plane, and the scene with triangles. EXACTFF_TEST_SCALE multiplies the number
 // of scenes, EXACTFF_TEST_SEED selects other scenes.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <string>
-#include <vector>
-
-#include "exactff/matrix.h"
-#include "exactff/methods.h"
-#include "exactff/view.h"
 #include "support/oracle.h"
 #include "support/oracle_check.h"
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 #include "whole_view/referee.h"
 
 namespace exactff::validation {
 namespace {
 
-using generate::PlainScene;
-using generate::Random;
 using Corners = std::vector<Vec3>;
 
 // A plane with integer points o + i u + j v + k n, which are exact in doubles.

@@ -4,21 +4,11 @@
 // sources with more than one face in a plane, whose overlaps the sampled method counts twice. Over 4,008 scenes of
 // these two kinds, 256 rays and eps_B = 1e-4 gave an RMS error of 1.2e-5 and a worst one of 4.3e-4; a lost or an
 // invented occluder costs 1e-2 and more.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
-#include "exactff/adaptive.h"
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 constexpr double kEpsB = 1e-4;
 

@@ -1,21 +1,10 @@
 // Pixels of exact pictures, compared with an estimate that knows nothing of form factors: 10^5 stratified points of the
 // lamps for each pixel, and for each a ray against every face, in doubles. The estimate brings its own error bars.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <numbers>
-
-#include "exactff/models.h"
-#include "exactff/render.h"
-#include "exactff/scene_files.h"
-#include "generate/random.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {
 
-using generate::Random;
 using render::Picture;
 
 using Vector = std::array<double, 3>;

@@ -2,19 +2,11 @@
 // second opinion, in every bit; pairs by the mean of plain factors at random points. validation/suite.sh compares the
 // bytes of all answers, and unobstructed pairs with closed forms; for it EXACTFF_TEST_SCALE is 4, which takes in scenes
 // of more than a hundred faces, and four times as many points.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <map>
-#include <string>
 
-#include "exactff/check.h"
-#include "exactff/receiver.h"
-#include "exactff/scene_files.h"
 #include "support/oracle.h"
 #include "support/plain_factor.h"
+#include "support/test.h"
 #include "table/csv.h"
 
 namespace exactff::validation {

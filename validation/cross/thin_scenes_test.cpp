@@ -3,26 +3,16 @@
 // selects others. For a million scenes:
 //
 //   EXACTFF_TEST_SCALE=500 build/sampled_tests --gtest_filter='ThinScenes.*'
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
 #include <csignal>
-#include <cstdint>
 #include <cstdio>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "adaptive/sampled_scene.h"
-#include "generate/random.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 
 namespace exactff::adaptive {
 namespace {
-
-using generate::Random;
 
 volatile std::sig_atomic_t seed_high = 0, seed_low = 0;
 

@@ -4,24 +4,13 @@
 //
 // EXACTFF_TEST_SCALE multiplies the number of scenes; EXACTFF_TEST_POINTS is the number of points of the second
 // opinion, 256 if unset.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <numeric>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "exactff/models.h"
-#include "exactff/receiver.h"
-#include "exactff/view_factors.h"
 #include "kernel/numbers.h"
 #include "studies/honesty.h"
 #include "support/oracle.h"
 #include "support/plain_factor.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {

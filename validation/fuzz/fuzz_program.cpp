@@ -1,6 +1,4 @@
-// fuzz_program [--seconds N] [--runs N] [--seed S] [--keep FOLDER]
-// fuzz_program --replay FOLDER
-// Both accept --program FILE, to run the program of another build.
+// fuzz_program [--seconds N] [--first N] [--runs N] [--seed S] [--keep FOLDER] [--program FILE]
 //
 // Runs the whole program on random scenes and files (odd_files.h) with random command lines from its own option tables
 // (odd_commands.h), as a user would. Some runs are interrupted, or have little memory or disk space. Each run must end
@@ -8,12 +6,12 @@
 // must be valid (output_judge.py), and complete or absent. A second run must give the same bytes.
 //
 // This is a separate program and not a libFuzzer target, because libFuzzer would not see the coverage of a process that
-// it starts. It also accepts the optimised build, which runs far more cases per second. Cases depend only on the seed
-// and their number.
+// it starts. It also accepts the optimised build, which runs far more cases per second.
 //
-// A finding is shortened word by word and kept in FOLDER with its files and command lines: one of each kind, and the
-// number of times that it occurred. The exit code is 1 if there is a finding.
-#include <algorithm>
+// A finding is kept in FOLDER with its files and printed with its command lines: one of each kind, and the number of
+// times that it occurred. Cases depend only on the seed and their number, so `--first N --runs 1` repeats one. The exit
+// code is 1 if there is a finding.
+#include <array>
 #include <charconv>
 #include <chrono>
 #include <csignal>
@@ -27,6 +25,7 @@
 #include "fuzz/program_trial.h"
 #include "support/program.h"
 #include "support/random_scenes.h"
+#include "text/escape.h"
 #include "unit/outside/sanitized.h"
 
 namespace exactff::validation {
@@ -38,10 +37,10 @@ using generate::Random;
 
 struct Arguments {
   double seconds = 1e9;
+  std::uint64_t first = 0;
   std::uint64_t runs = ~std::uint64_t{0};
   std::uint64_t seed = 1;
   fs::path keep = "findings";
-  std::string replay;
   std::string program = EXACTFF_PROGRAM;
 };
 
@@ -76,6 +75,12 @@ std::string kind_of(const std::string& problem) {
   return std::regex_replace(problem.substr(0, kLongest), kParticular, "*");
 }
 
+std::string command_line(const Words& words) {
+  std::string line = "exactff";
+  for (const std::string& word : words) line += ' ' + text::shell_word(word);
+  return line;
+}
+
 class Fuzzer {
  public:
   explicit Fuzzer(Arguments arguments) : arguments_(std::move(arguments)), least_memory_(least_megabytes(bench_)) {}
@@ -84,19 +89,12 @@ class Fuzzer {
     const auto start = Clock::now();
     for (; runs_ < arguments_.runs; ++runs_) {
       if (std::chrono::duration<double>(Clock::now() - start).count() > arguments_.seconds) break;
-      const ProgramCase one = make_case(runs_);
+      const std::uint64_t number = arguments_.first + runs_;
+      const ProgramCase one = make_case(number);
       const std::string problem = problem_of(one, bench_, judge_);
-      if (!problem.empty()) take(one, problem);
+      if (!problem.empty() && ++kinds_[kind_of(problem)] == 1) take(one, problem, number);
     }
     return report();
-  }
-
-  int replay() {
-    const ProgramCase one = read_case_folder(arguments_.replay);
-    for (const Words& words : one.commands) std::cout << command_line(words) << '\n';
-    const std::string problem = problem_of(one, bench_, judge_);
-    std::cout << (problem.empty() ? "clean" : problem) << '\n' << text_of(bench_.scratch / "first" / "stderr");
-    return problem.empty() ? 0 : 1;
   }
 
  private:
@@ -108,49 +106,20 @@ class Fuzzer {
     return one;
   }
 
-  void take(const ProgramCase& found, const std::string& problem) {
-    const std::string kind = kind_of(problem);
-    if (++kinds_[kind] > 1) return;
-    const ProgramCase one = shortened(found, kind);
+  void take(const ProgramCase& one, const std::string& problem, std::uint64_t number) {
+    static constexpr std::array<const char*, kDisturbanceCount> kNames = {"none",          "twice",     "signal",
+                                                                          "little memory", "full disk", "full output"};
+    const std::string of = "--seed " + std::to_string(arguments_.seed) + " --first " + std::to_string(number);
     const fs::path folder =
-        arguments_.keep / ("program-" + std::to_string(arguments_.seed) + '-' + std::to_string(runs_));
-    keep_case(one, folder);
-    std::cout << "FINDING " << problem << "\n  " << command_line(one.commands.back()) << "  # "
-              << disturbance_words(one) << "\n  replay: fuzz_program --replay " << folder.string() << std::endl;
-  }
-
-  // Removes everything that the problem does not need: the disturbance, steps, words, files. Stops if this takes too
-  // long.
-  ProgramCase shortened(ProgramCase one, const std::string& kind) {
-    const auto still = [&](const ProgramCase& smaller) { return kind_of(problem_of(smaller, bench_, judge_)) == kind; };
-    const auto start = Clock::now();
-    const auto attempt = [&](const auto& change) {
-      if (Clock::now() - start > std::chrono::seconds(30)) return;
-      ProgramCase smaller = one;
-      change(smaller);
-      if (still(smaller)) one = std::move(smaller);
-    };
-    if (one.disturbance == Disturbance::kSignal || kind.find("not end") != std::string::npos) return one;
-    attempt([](ProgramCase& c) { c.disturbance = Disturbance::kNone; });
-    for (std::size_t i = one.commands.size() - 1; i-- > 0;) {
-      attempt([i](ProgramCase& c) { c.commands.erase(c.commands.begin() + static_cast<std::ptrdiff_t>(i)); });
-    }
-    for (const std::size_t length : {2U, 1U, 4U}) shorten_words(attempt, one, length);
-    for (const auto& file : Files(one.files)) {
-      attempt([&file](ProgramCase& c) { c.files.erase(file.first); });
-    }
-    return one;
-  }
-
-  template <class Attempt>
-  static void shorten_words(const Attempt& attempt, const ProgramCase& one, std::size_t length) {
-    for (std::size_t at = one.commands.back().size(); at-- > 1;) {
-      if (at + length > one.commands.back().size()) continue;
-      attempt([=](ProgramCase& c) {
-        const auto first = c.commands.back().begin() + static_cast<std::ptrdiff_t>(at);
-        c.commands.back().erase(first, first + static_cast<std::ptrdiff_t>(length));
-      });
-    }
+        arguments_.keep / ("program-" + std::to_string(arguments_.seed) + '-' + std::to_string(number));
+    std::error_code ignored;  // some files may not be read
+    fs::create_directories(folder, ignored);
+    fs::copy(bench_.scratch, folder, fs::copy_options::recursive | fs::copy_options::overwrite_existing, ignored);
+    std::cout << "FINDING " << problem << "\n";
+    for (const Words& words : one.commands) std::cout << "  " << command_line(words) << '\n';
+    std::cout << "  disturbance: " << kNames.at(static_cast<std::size_t>(one.disturbance)) << ' ' << one.amount << ' '
+              << one.signal << "; files: " << folder.string() << "\n  replay: fuzz_program " << of << " --runs 1"
+              << std::endl;
   }
 
   [[nodiscard]] int report() const {
@@ -184,6 +153,8 @@ Arguments parsed(int argc, char** argv) {
     const char* value = argv[i + 1];
     if (flag == "--seconds")
       arguments.seconds = number<double>(value);
+    else if (flag == "--first")
+      arguments.first = number<std::uint64_t>(value);
     else if (flag == "--runs")
       arguments.runs = number<std::uint64_t>(value);
     else if (flag == "--seed")
@@ -192,8 +163,6 @@ Arguments parsed(int argc, char** argv) {
       arguments.keep = value;
     else if (flag == "--program")
       arguments.program = value;
-    else if (flag == "--replay")
-      arguments.replay = value;
     else
       throw std::runtime_error("no such option: " + std::string(flag));
   }
@@ -207,8 +176,7 @@ Arguments parsed(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace exactff::validation;
   try {
-    const Arguments arguments = parsed(argc, argv);
-    return arguments.replay.empty() ? Fuzzer(arguments).fuzz() : Fuzzer(arguments).replay();
+    return Fuzzer(parsed(argc, argv)).fuzz();
   } catch (const std::exception& error) {
     std::cerr << "fuzz_program: " << error.what() << '\n';
     return 2;

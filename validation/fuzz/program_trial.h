@@ -1,4 +1,5 @@
-// Runs a ProgramCase and checks all its results: how the program ends, what it prints, and every file that it leaves.
+// One run of the whole program: input files, command lines, and a disturbance of the last command while it runs. A
+// trial checks all its results: how the program ends, what it prints, and every file that it leaves.
 #pragma once
 
 #include <sys/types.h>
@@ -6,10 +7,29 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <vector>
 
-#include "fuzz/program_case.h"
+#include "fuzz/odd_commands.h"
 
 namespace exactff::validation {
+
+enum class Disturbance {
+  kNone,
+  kTwice,         // run again elsewhere, with `amount` threads if the command has them: must give the same bytes
+  kSignal,        // `signal` after `amount` ms; then the command is resumed, if it can be
+  kLittleMemory,  // `amount` MB of address space
+  kFullDisk,      // no file beyond `amount` bytes
+  kFullOutput,    // standard output cannot be written
+};
+inline constexpr std::size_t kDisturbanceCount = 6;
+
+struct ProgramCase {
+  Files files;
+  std::vector<Words> commands;
+  Disturbance disturbance = Disturbance::kNone;
+  int amount = 0;
+  int signal = 0;
+};
 
 // Keeps output_judge.py running: starting the interpreter takes longer than most commands.
 class OutputJudge {

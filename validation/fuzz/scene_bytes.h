@@ -1,10 +1,10 @@
 // Decodes arbitrary bytes to small degenerate scenes, for a coverage-guided fuzzer to mutate.
 //
-// The bytes are a program. A header places the receiver and gives the number of faces of the source and the identity to
-// test. Then each instruction adds one face (a new one, or a copy, neighbour, cover or tiling of existing ones) or
-// modifies the last face (spike, idle corner, ulp, slide along a ray). Coordinates are mostly small multiples of 1/4,
-// so that coincidences are the rule; eight raw bytes can stand for any double. Faces that the scene builder would
-// refuse are left out, so that nearly every input gives a scene.
+// The bytes are a program. A header places the receiver and gives the number of faces of the source. Then each
+// instruction adds one face (a new one, or a copy, neighbour, cover or tiling of existing ones) or modifies the last
+// face (spike, idle corner, ulp, slide along a ray). Coordinates are mostly small multiples of 1/4, so that
+// coincidences are the rule; eight raw bytes can stand for any double. Faces that the scene builder would refuse are
+// left out, so that nearly every input gives a scene.
 #pragma once
 
 #include <cstdint>
@@ -16,27 +16,9 @@
 
 namespace exactff::validation {
 
-// A change that must leave F unchanged, or move it in a known direction.
-enum class Identity : std::uint8_t {
-  kOrder,
-  kRetriangulation,
-  kSymmetry,
-  kScaling,
-  kNormalLength,
-  kTwinOccluder,
-  kOneOccluderLess,
-  kCuttersAlone,
-  kIdleCorners,
-  kSpikes,
-  kObjText,
-  kDrawing,
-};
-inline constexpr std::size_t kIdentityCount = 12;
-
 struct FuzzCase {
   generate::PlainScene scene;
-  Identity identity = Identity::kOrder;
-  std::uint64_t seed = 0;  // of the identity's random choices
+  std::uint64_t seed = 0;  // of the random choices of a judge
 };
 
 // Nothing if no face of the source can be used.

@@ -1,29 +1,11 @@
 // Rooms from CAD: faces that share no corners, each corner moved by 1e-15 to 3e-2. Their view factors are judged by
 // those of the room that was meant, as far as moved corners can change them, and by means of point factors.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "exactff/exact.h"
-#include "exactff/receiver.h"
-#include "exactff/view.h"
-#include "exactff/view_factors.h"
-#include "generate/plain_scene.h"
-#include "generate/random.h"
 #include "property/closed_rooms.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 #include "view_factors/pairs.h"
 
 namespace exactff::validation {
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 double perimeter_of_all(const PlainScene& scene) {
   double sum = 0.0;
@@ -47,7 +29,7 @@ std::string any_patch(const PlainScene& scene, Random& random) {
 // edges is at most their length times how far corners move.
 TEST(AlmostClosedRooms, HaveTheFactorsOfTheRoomThatWasMeant) {
   std::size_t cells = 0, meant_cells = 0, judged = 0, slow = 0;
-  for (std::uint64_t s = 0; s < scaled_count(40); ++s) {
+  for (std::uint64_t s = 0; s < scaled_count(20); ++s) {
     Random random(seed_of(s));
     const PlainScene room = random_plain_room(random);
     const double moved = std::pow(10.0, -15.0 + 10.0 * random.unit());
@@ -98,7 +80,7 @@ TEST(AlmostClosedRooms, CountWhatIsLeftOut) {
 TEST(AlmostClosedRooms, HoldMeansOfPoints) {
   constexpr std::size_t kPoints = 1 << 11;
   double largest = 0.0;
-  for (std::uint64_t s = 0; s < scaled_count(10); ++s) {
+  for (std::uint64_t s = 0; s < scaled_count(6); ++s) {
     Random random(seed_of(s));
     PlainScene room = random_plain_room(random);
     if (random.one_in(3)) add_thing(room, box({0.25, 0.25, 0.0}, {0.75, 0.5, 0.5}));

@@ -1,19 +1,12 @@
 // The proof that comes with a value: enclosures at every precision, and the rounding of visible fractions.
 #include <gmpxx.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
 
 #include "support/decimal.h"
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 // Each precision cap ends the loop with a different ball; all balls contain the same F, and so do the bounds.
 TEST(Certificate, BallsAndBoundsOfEveryPrecisionHoldTheFormFactor) {

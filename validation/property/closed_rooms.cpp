@@ -2,17 +2,12 @@
 
 #include <gmpxx.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <string>
+#include "support/test.h"
 
 namespace exactff::validation {
 
 using generate::PlainFace;
 using generate::PlainPatch;
-using generate::PlainScene;
-using generate::Random;
 using generate::Ring;
 
 namespace {

@@ -1,23 +1,15 @@
 // In a closed room, all form factors from an inner point add up to exactly one, whatever objects the room contains. The
 // sum of the balls of all patches contains 1, and it is as narrow as the requested precision.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-
 #include "property/closed_rooms.h"
 #include "support/decimal.h"
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 #include "support/transform.h"
 
 namespace exactff::validation {
 namespace {
 
 using generate::PlainPatch;
-using generate::PlainScene;
-using generate::Random;
 
 Enclosure sum_over_patches(const Scene& scene, const PlainScene& plain, int digits) {
   ExactOptions options;

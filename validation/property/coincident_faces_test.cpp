@@ -1,16 +1,6 @@
 // Coincident faces: whatever the order of the faces in the file, the same is seen of fronts together, of backs and of
 // what is open, and every form factor keeps its bits. Rows of matrices meet each other.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
-#include "exactff/matrix.h"
-#include "exactff/view.h"
-#include "generate/plain_scene.h"
-#include "generate/random.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 #include "support/view_judge.h"
 #include "support/view_scenes.h"
 
@@ -18,8 +8,6 @@ namespace exactff::validation {
 namespace {
 
 using generate::PlainPatch;
-using generate::PlainScene;
-using generate::Random;
 
 constexpr RandomFamily kSheets{"Sheets", 60, &sheets_scene};
 
@@ -89,12 +77,6 @@ PlainScene sheets_over_a_floor() {
   add("ceiling", 0, 0, 1, 0.5, 1, false);
   add("plate", 0.25, 0.25, 0.75, 0.75, 0.5, false);
   return plain;
-}
-
-std::vector<Selection> all_patches(const Scene& scene) {
-  std::vector<Selection> all;
-  for (std::uint32_t p = 0; p < scene.patches().size(); ++p) all.push_back({PatchId{p}, {}, scene.id()});
-  return all;
 }
 
 matrix::Matrix factors_of_sheets(const Scene& scene) {

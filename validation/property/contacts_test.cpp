@@ -1,26 +1,10 @@
 // Solids that touch: boxes of whole unit cubes, in a room or not, in sheared coordinates. Which unit squares are buried
 // is known from the cubes alone. The judge is the same scene made of the other unit squares, in which nothing touches.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cstdint>
-#include <map>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "exactff/exact.h"
-#include "exactff/matrix.h"
-#include "exactff/receiver.h"
-#include "exactff/view.h"
-#include "generate/random.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 
 namespace exactff::validation::contacts {
 namespace {
 
-using generate::Random;
 using Cell = std::array<int, 3>;
 
 // Maps whole coordinates to whole ones and keeps the orientation.

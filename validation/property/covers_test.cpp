@@ -1,29 +1,17 @@
 // A search that stops as soon as a few occluders hide all, and that begins with those that hid the source from another
 // receiver, finds what the whole search finds. EXACTFF_TEST_SCALE multiplies the number of random scenes.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <limits>
-#include <numeric>
 #include <ostream>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "exact/source_planes.h"
-#include "exactff/exact.h"
 #include "generate/families.h"
 #include "support/oracle_check.h"
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 #include "visibility/visible_boundary.h"
 
 namespace exactff::validation {
 namespace {
 
-using generate::PlainScene;
-using generate::Random;
 using visibility::BoundaryRequest;
 using visibility::EdgeWorkspace;
 using visibility::PlaneVisibility;

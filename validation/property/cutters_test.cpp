@@ -2,18 +2,12 @@
 // is checked with exact fractions, on scenes of every random family. EXACTFF_TEST_SCALE multiplies their
 // number.
 #include <gmpxx.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-
-#include "exactff/exact.h"
 #include "support/oracle_check.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {
-
-using generate::Random;
 
 class Cutters : public testing::TestWithParam<RandomFamily> {
  protected:

@@ -1,23 +1,13 @@
 // A drawing shows the exact geometry, rounded to doubles. Checked on scenes of every random family.
 // EXACTFF_TEST_SCALE multiplies the number of views.
 #include <gmpxx.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <string>
-
-#include "exactff/exact.h"
 #include "report/report.h"
 #include "support/oracle_check.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 // Loops, projected along the axis of the normal's largest component, in rational numbers.
 class Projection {

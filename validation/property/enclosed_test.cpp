@@ -1,27 +1,10 @@
 // Closed surfaces around what a patch sees: rooms, and scenes of every family, judged by whole views of points.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "exactff/matrix.h"
-#include "exactff/receiver.h"
-#include "exactff/scene_files.h"
-#include "exactff/view.h"
-#include "generate/plain_scene.h"
 #include "property/closed_rooms.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 #include "view_factors/pairs.h"
 
 namespace exactff::validation::enclosed_patches {
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 std::vector<Selection> all_of(const Scene& scene) {
   std::vector<Selection> all;

@@ -1,27 +1,12 @@
 // The advice of `info` to turn patches round is silent in random rooms with windows, carpets, furniture and stray faces
 // whose fronts are right (room_advice_test.cpp follows advice), and the fronts that lie on each other are named.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <map>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "exactff/methods.h"
-#include "exactff/slips.h"
-#include "generate/plain_scene.h"
-#include "generate/random.h"
 #include "kernel/vec.h"
 #include "property/flip_judge.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 
 namespace exactff::slips {
 namespace {
 
-using generate::PlainScene;
-using generate::Random;
 using validation::advised_flips;
 using validation::scaled_count;
 using validation::seed_of;

@@ -1,29 +1,15 @@
 // The gradient of the form factor against references that share nothing with it: differences of values that are
 // certified to many digits (slopes.h), and identities. The receivers are at the origin, so that steps of 2^-200 of the
 // smallest coordinate are exact.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "exactff/exact.h"
-#include "exactff/scene_files.h"
 #include "generate/families.h"
 #include "kernel/ball.h"
 #include "property/slopes.h"
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 #include "support/transform.h"
 
 namespace exactff::validation {
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 constexpr std::array kAxes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
 

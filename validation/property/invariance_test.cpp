@@ -1,22 +1,13 @@
 // Changes of a scene that must not change a bit of the value, the zero flag or the visible fraction.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <sstream>
 #include <thread>
 
-#include "exactff/scene_files.h"
 #include "generate/families.h"
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 #include "support/transform.h"
 
 namespace exactff::validation {
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 // Compares each of `count` random scenes with the result of `change`.
 void expect_unchanged_bits(std::uint64_t count, const std::function<PlainScene(const PlainScene&, Random&)>& change) {

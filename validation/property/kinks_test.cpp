@@ -2,24 +2,15 @@
 // EXACTFF_TEST_SCALE multiplies the number of random scenes.
 #include "gradient/kinks.h"
 
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "exact/source_planes.h"
-#include "exactff/exact.h"
 #include "support/random_meshes.h"
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 #include "visibility/visible_boundary.h"
 
 namespace exactff::validation {
 namespace {
 
-using generate::PlainScene;
-using generate::Random;
 using gradient::KinkProof;
 using gradient::KinkSearch;
 using visibility::BoundaryRequest;

@@ -1,27 +1,13 @@
 // Other measures than the form factor: known values, and identities that hold for any scene.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
-#include "exactff/error.h"
-#include "exactff/view.h"
 #include "property/closed_rooms.h"
 #include "support/decimal.h"
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 #include "support/view_judge.h"
 #include "support/view_scenes.h"
 
 namespace exactff::validation {
-
-static void PrintTo(const RandomFamily& family, std::ostream* out) { *out << family.name; }
-
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 constexpr Measure kSolidAngle{.kind = MeasureKind::kSolidAngle};
 constexpr Measure kOvercast{.kind = MeasureKind::kOvercast};

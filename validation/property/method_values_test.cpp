@@ -4,26 +4,11 @@
 // The scenes are those of the exact solver's tests (support/random_scenes.h), degenerate ones first, unchanged and with
 // every axis scaled by a different power of two, up to 2^1000. EXACTFF_TEST_SCALE multiplies the number of scenes,
 // EXACTFF_TEST_SEED selects other scenes.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "exactff/exact.h"
-#include "exactff/methods.h"
 #include "support/oracle_check.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 // The settings end the recursion early, because each leaf costs the control an exact visible fraction. The exact method
 // is tested by oracle_test.cpp, and needs seconds if scenes of size 2^1000 go to the Boolean engine.

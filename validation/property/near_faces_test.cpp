@@ -1,25 +1,13 @@
 // Faces near a point, and regions of faces, on scenes of every random family. The judge looks at every piece of the
 // scene and decides in rational numbers.
 #include <gmpxx.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <set>
-#include <string>
-#include <vector>
-
-#include "exactff/receiver.h"
-#include "exactff/view.h"
 #include "support/oracle_check.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {
 
-using generate::Random;
 using Rational3 = std::array<mpq_class, 3>;
 
 Rational3 exact(const Vec3& v) { return {mpq_class(v.x), mpq_class(v.y), mpq_class(v.z)}; }

@@ -3,28 +3,17 @@
 // cut. EXACTFF_TEST_SCALE multiplies the number of random scenes.
 #include "scene/panels.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "exactff/exact.h"
 #include "generate/vectors.h"
 #include "support/oracle_check.h"
 #include "support/random_meshes.h"
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 #include "support/transform.h"
 #include "visibility/plane_visibility.h"
 
 namespace exactff::validation {
 namespace {
 
-using generate::PlainScene;
-using generate::Random;
 using generate::operator+;
 using generate::operator*;
 

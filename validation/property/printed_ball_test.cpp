@@ -1,16 +1,11 @@
 // A printed enclosure, read back exactly, contains the enclosure.
-#include <gtest/gtest.h>
-
-#include "exactff/enclosure.h"
 #include "kernel/ball.h"
 #include "support/decimal.h"
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {
-
-using generate::Random;
 
 // Midpoints of any size with few or many bits, radii from far above to far below them; sometimes either is 0.
 struct Sample {

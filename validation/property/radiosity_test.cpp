@@ -1,25 +1,12 @@
 // The bounds of radiosities on random systems and in random buildings, judged by Gaussian elimination in rationals.
-#include "exactff/radiosity.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "generate/random.h"
 #include "kernel/numbers.h"
 #include "property/closed_rooms.h"
 #include "radiosity/system.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 
 namespace exactff::radiosity {
 namespace {
 
-using generate::Random;
 using kernel::Rational;
 using kernel::to_rational;
 using validation::scaled_count;

@@ -1,25 +1,12 @@
 // The advice of `info` to turn faces round, in concave rooms with T-junctions, lamps and boxes that stand on the floor,
 // on each other and in corners, of which some or all faces look the wrong way. It is obeyed, and exact views from
 // points of all faces tell how much their fronts lose: the share of the view that shows backs or nothing.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "exactff/slips.h"
-#include "generate/plain_scene.h"
-#include "generate/random.h"
 #include "property/flip_judge.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 
 namespace exactff::slips {
 namespace {
 
-using generate::PlainScene;
-using generate::Random;
 using validation::advised_flips;
 using validation::LostViews;
 using validation::scaled_count;

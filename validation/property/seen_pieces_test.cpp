@@ -1,22 +1,11 @@
 // Without the faces of which a box sees no piece (visibility/walls.h), views from its points are the same.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
-#include "exactff/view.h"
-#include "generate/random.h"
 #include "property/closed_rooms.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 #include "visibility/walls.h"
 
 namespace exactff::validation {
 namespace {
 
-using generate::PlainScene;
-using generate::Random;
 using visibility::pieces_seen_from;
 
 void expect_same(const ViewShare& a, const ViewShare& b) {

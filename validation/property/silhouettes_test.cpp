@@ -1,25 +1,16 @@
 // A search by silhouettes finds what a search by outlines and the Booleans find. EXACTFF_TEST_SCALE multiplies the
 // number of random scenes.
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "contour/contour.h"
 #include "exact/source_planes.h"
-#include "exactff/exact.h"
 #include "kernel/ball.h"
 #include "support/random_meshes.h"
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 #include "visibility/visible_boundary.h"
 
 namespace exactff::validation {
 namespace {
 
-using generate::PlainScene;
-using generate::Random;
 using visibility::BoundaryRequest;
 using visibility::EdgeWorkspace;
 using visibility::PlaneVisibility;

@@ -1,21 +1,12 @@
 // Several sources at one point on scenes of every random family: by one sweep as one by one, in every bit.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <sstream>
-
-#include "exactff/models.h"
-#include "exactff/truth.h"
 #include "support/oracle_check.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 #include "support/view_scenes.h"
 #include "whole_view/light.h"
 
 namespace exactff::validation {
 namespace {
 
-using generate::PlainScene;
 using whole_view::Sky;
 using whole_view::SourceFactors;
 

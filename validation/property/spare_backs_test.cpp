@@ -1,23 +1,13 @@
 // Backs of closed surfaces, which cells leave out of the occluders (sight.h): the same solids with one corner more,
 // which opens their surfaces and changes no shape, must have the same view factors.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
-#include "exactff/view_factors.h"
-#include "generate/random.h"
 #include "property/closed_rooms.h"
 #include "scene/closed_surfaces.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {
 
 using generate::PlainFace;
-using generate::PlainScene;
-using generate::Random;
 using generate::Ring;
 
 constexpr int kSide = 4;  // of the cube that holds everything, whose corners are whole numbers

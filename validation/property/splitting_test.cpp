@@ -1,18 +1,13 @@
 // Compares parts of a source with the whole source, and more occluders with fewer.
 #include <gmpxx.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {
 
 using generate::PlainPatch;
-using generate::PlainScene;
-using generate::Random;
 
 using Corners = std::vector<Vec3>;
 

@@ -3,29 +3,15 @@
 //
 // The scene is first moved, with roundings, so that one vertex lies at the origin. Steps of 2^-200 of the smallest
 // coordinate are then exact (slopes.h).
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "exactff/exact.h"
-#include "exactff/scene_files.h"
 #include "generate/families.h"
 #include "kernel/ball.h"
 #include "property/slopes.h"
-#include "support/random_scenes.h"
 #include "support/solve.h"
+#include "support/test.h"
 #include "support/transform.h"
 
 namespace exactff::validation::by_vertices {
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 bool holds_zero(const Ball& ball) { return EnclosureInside::of(ball).contains(0.0); }
 double component(const Vec3& v, std::size_t axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }

@@ -1,29 +1,12 @@
 // View factors from patch to patch on random scenes of every family and in closed rooms, judged by means of exact point
 // factors at random points, by the other direction, and by row sums.
-#include "exactff/view_factors.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <map>
-#include <optional>
-#include <string>
-#include <tuple>
-#include <vector>
-
-#include "exactff/exact.h"
-#include "exactff/matrix.h"
-#include "exactff/receiver.h"
 #include "kernel/numbers.h"
 #include "property/closed_rooms.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {
 
-using generate::Random;
 Selection patch_of(const Scene& scene, std::size_t index) { return {static_cast<PatchId>(index), {}, scene.id()}; }
 
 constexpr double kRoundings = 1.0 + 0x1p-30;  // of areas, which may be denormal

@@ -1,24 +1,13 @@
 // The regions of a whole view on scenes of every random family and on models (support/region_judge.h): the areas of
 // pictures are form factors, the areas of visible regions are those that CGAL's Booleans find face by face, and names
 // lie on what they name.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <set>
-#include <string>
-
-#include "exactff/models.h"
-#include "exactff/scene_files.h"
 #include "support/oracle_check.h"
-#include "support/random_scenes.h"
 #include "support/region_judge.h"
+#include "support/test.h"
 #include "support/view_scenes.h"
 
 namespace exactff::validation {
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 class ViewRegions : public testing::TestWithParam<RandomFamily> {
  protected:

@@ -1,25 +1,13 @@
 // The whole view on scenes of every random family, judged by what shares no code of the sweep: the per-source solver,
 // in every bit; the two sides of every arc, found again in rational numbers; what nothing hides, as the form factor of
 // a box around everything; shares and backs, as what faces add to others in one source.
-#include "exactff/view.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
-#include "exactff/models.h"
 #include "support/oracle_check.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 #include "support/view_judge.h"
 #include "support/view_scenes.h"
 
 namespace exactff::validation {
 namespace {
-
-using generate::PlainScene;
-using generate::Random;
 
 class View : public testing::TestWithParam<RandomFamily> {
  protected:

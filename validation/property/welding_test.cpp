@@ -1,28 +1,11 @@
 // Rooms whose corners were moved by a slip of an export, welded to the rooms that were meant.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <tuple>
-#include <utility>
-#include <vector>
-
-#include "exactff/scene.h"
-#include "exactff/view_factors.h"
-#include "generate/plain_scene.h"
-#include "generate/random.h"
 #include "property/closed_rooms.h"
-#include "support/complaint.h"
-#include "support/holds.h"
-#include "support/random_scenes.h"
+#include "support/test.h"
 #include "support/transform.h"
 
 namespace exactff::validation {
 namespace {
 
-using generate::PlainScene;
-using generate::Random;
 using Place = std::tuple<double, double, double>;
 
 Place place_of(const Vec3& v) { return {v.x, v.y, v.z}; }

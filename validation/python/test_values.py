@@ -41,26 +41,6 @@ def test_values_are_those_of_a_truth_file(tmp_path, scene, on, grid, sources):
     assert same_bits(plain, found.value)
 
 
-@pytest.mark.filterwarnings("ignore::exactff.ModellingWarning")
-def test_degenerate_receivers_by_coordinates_give_the_bits_of_the_program(tmp_path):
-    """Points on corners, edges and planes of a scene of small whole coordinates."""
-    random = np.random.default_rng(7)
-    points = random.integers(-4, 5, (60, 3)) / 4.0
-    normals = random.integers(-2, 3, (60, 3)).astype(np.float64)
-    normals[~normals.any(axis=1)] = UP
-    file = tmp_path / "receivers.csv"
-    lines = [",".join(map(repr, [*p, *n])) for p, n in zip(points.tolist(), normals.tolist())]
-    file.write_text("x,y,z,nx,ny,nz\n" + "\n".join(lines) + "\n")
-    for model in ("@lattice:n=60,seed=2", "@tiles:n=30", "@soup:n=40,seed=9"):
-        out = tmp_path / "truth.csv"
-        program("truth", model, "--receivers", file, "--force", "-o", out)
-        scene = open_scene(model)
-        found = scene.form_factors(points, normals, full=True)
-        rows = truth_rows(out)
-        assert same_bits(found.value, column(rows, "exact", len(scene.emitters)))
-        assert [STATUS[row["status"]] for row in rows] == found.status.ravel().tolist()
-
-
 def test_the_sky_is_a_source_as_in_truth_files(tmp_path):
     lamp = lamp_above((0.5, 1.0))
     at = lamp.receivers("plates", grid=4)
@@ -159,31 +139,3 @@ def test_other_measures_are_those_of_a_truth_file(tmp_path):
     assert total == pytest.approx(4.0 * np.pi, abs=1e-13)
     with pytest.raises(exactff.InputError, match="needs a surface with a normal"):
         scene.form_factor(point, None, "window", measure="overcast")
-
-
-def test_other_measures_are_what_quadrature_finds():
-    rng = np.random.default_rng(7)
-    nodes, weights = np.polynomial.legendre.leggauss(48)
-    nodes, weights = 0.5 * (nodes + 1.0), 0.5 * weights
-    s, t = np.meshgrid(nodes, nodes)
-    area = np.outer(weights, weights) * s  # of the map (s, t) -> a + s ((1 - t) (b - a) + t (c - a))
-    for _ in range(20):
-        corners = rng.uniform([-2.0, -2.0, 1.5], [2.0, 2.0, 3.0], (3, 3))
-        normal, up = rng.uniform(-0.3, 0.3, (2, 3)) + [0.0, 0.0, 1.0]
-        a, b, c = corners
-        across = np.cross(b - a, c - a)
-        if across @ a > 0.0:  # its front looks at the receiver
-            b, c, across = c, b, -across
-        y = a + s[..., None] * ((1.0 - t)[..., None] * (b - a) + t[..., None] * (c - a))
-        r = np.linalg.norm(y, axis=-1)
-        solid_angle = area * -(y @ across) / r**3
-        n, z = y @ normal / np.linalg.norm(normal) / r, y @ up / np.linalg.norm(up) / r
-        assert n.min() > 0.0 and z.min() > 0.0
-        scene = exactff.Scene([a, b, c], [[0, 1, 2]])
-
-        def found(**measure):
-            return float(scene.form_factor([0.0, 0.0, 0.0], normal, "default", **measure).value)
-
-        assert found(measure="solid-angle") == pytest.approx(solid_angle.sum(), abs=1e-13)
-        assert found(measure="overcast", up=up) == pytest.approx(
-            3.0 / (7.0 * np.pi) * (n * (1.0 + 2.0 * z) * solid_angle).sum(), abs=1e-13)

@@ -1,17 +1,10 @@
 // Every case of data/reference and data/regression, with the library and with the program as a script would call it.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
 #include <cstdlib>
 
-#include "exactff/exact.h"
-#include "exactff/scene_files.h"
 #include "support/case_file.h"
 #include "support/decimal.h"
-#include "support/program.h"
 #include "support/solve.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {

@@ -3,18 +3,13 @@
 //   parallel, below a corner (B-3): (X/A atan(Y/A) + Y/B atan(X/B)) / 2 pi, A = sqrt(1+X^2), B = sqrt(1+Y^2),
 //   perpendicular (B-4), all sides 1: (atan 1 - atan(1/sqrt 2) / sqrt 2) / 2 pi;
 // a centred plate at half the height hides a centred square of twice its side: the difference of two such sums.
-#include <gtest/gtest.h>
-
 #include <cstdlib>
 
-#include "exactff/exact.h"
-#include "generate/plain_scene.h"
 #include "support/decimal.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {
-
-using generate::PlainScene;
 
 // The square [low,high]^2 at height z, facing down.
 void add_square(PlainScene& scene, const char* patch, double low, double high, double z) {

@@ -1,17 +1,7 @@
 // Scenes that once caused a fault other than a wrong value. Each is data/regression/NAME.obj with receivers in
 // NAME.csv. Every function for a receiver and a source is called for every receiver and every patch.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <set>
-
-#include "exactff/exact.h"
-#include "exactff/methods.h"
-#include "exactff/receiver.h"
-#include "exactff/scene_files.h"
 #include "report/report.h"
+#include "support/test.h"
 #include "support/view_judge.h"
 
 namespace exactff::validation {

@@ -1,14 +1,8 @@
 // The scenes of data/scenes have their documented properties.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <fstream>
 #include <iterator>
-#include <sstream>
 
-#include "exactff/exact.h"
-#include "exactff/scene_files.h"
 #include "generate/families.h"
+#include "support/test.h"
 
 namespace exactff::validation {
 namespace {

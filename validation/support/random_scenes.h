@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <ostream>
 #include <span>
 
 #include "generate/plain_scene.h"
@@ -48,6 +49,7 @@ struct RandomFamily {
   std::uint64_t count;  // for a test with little time
   generate::PlainScene (*make)(generate::Random&);
 };
+inline void PrintTo(const RandomFamily& family, std::ostream* out) { *out << family.name; }
 [[nodiscard]] std::span<const RandomFamily> families_on_rays();
 // All of the above. Every test of what the program computes, draws or writes uses this list.
 [[nodiscard]] std::span<const RandomFamily> random_families();

@@ -1,5 +1,5 @@
-// What nearly every test includes: GoogleTest, the usual standard headers, folders and files of a test, the program as
-// a script runs it, and the words of messages.
+// What nearly every test includes: GoogleTest, the usual standard headers, the public headers of the library, scenes by
+// hand and at random, folders and files of a test, the program as a script runs it, and the words of messages.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -30,10 +30,36 @@
 #include <utility>
 #include <vector>
 
+#include "exactff/adaptive.h"
+#include "exactff/check.h"
+#include "exactff/enclosure.h"
+#include "exactff/error.h"
+#include "exactff/exact.h"
+#include "exactff/exr.h"
+#include "exactff/geometry.h"
+#include "exactff/jobs.h"
+#include "exactff/matrix.h"
+#include "exactff/methods.h"
+#include "exactff/models.h"
+#include "exactff/radiosity.h"
+#include "exactff/receiver.h"
+#include "exactff/region.h"
+#include "exactff/render.h"
+#include "exactff/scene.h"
+#include "exactff/scene_files.h"
+#include "exactff/settings.h"
+#include "exactff/slips.h"
+#include "exactff/study.h"
+#include "exactff/table.h"
+#include "exactff/truth.h"
+#include "exactff/view.h"
+#include "exactff/view_factors.h"
 #include "support/complaint.h"
 #include "support/folder.h"
 #include "support/holds.h"
 #include "support/program.h"
+#include "support/random_scenes.h"
+#include "support/shapes.h"
 
 namespace exactff {
 

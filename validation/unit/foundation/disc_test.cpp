@@ -4,7 +4,6 @@
 #include <acb.h>
 
 #include "kernel/gauss.h"
-#include "support/shapes.h"
 #include "support/test.h"
 
 namespace exactff::kernel {

@@ -1,12 +1,10 @@
 // Exact numbers, filters and balls.
 #include <thread>
 
-#include "exactff/enclosure.h"
 #include "kernel/ball.h"
 #include "kernel/filter.h"
 #include "kernel/numbers.h"
 #include "kernel/split_mix.h"
-#include "support/shapes.h"
 #include "support/test.h"
 
 namespace exactff::kernel {
@@ -20,16 +18,6 @@ Rational power_of_two(long exponent) { return times_power_of_two(1, exponent); }
 double any_double(Random& random) {
   const double fraction = random.between(1.0, 2.0) * (random.one_in(2) ? -1.0 : 1.0);
   return std::ldexp(fraction, random.integer(-1074, 1023));
-}
-
-TEST(Numbers, NearestDoubleRoundsAsIeeeMultiplicationAndDivisionDoDenormalsIncluded) {
-  Random random(2);
-  for (int i = 0; i < 20000; ++i) {
-    const double a = any_double(random);
-    const double b = any_double(random);
-    ASSERT_EQ(nearest_double(to_rational(a) * to_rational(b)), a * b) << a << " * " << b;
-    ASSERT_EQ(nearest_double(to_rational(a) / to_rational(b)), a / b) << a << " / " << b;
-  }
 }
 
 Integer any_integer(Random& random, int bits) {

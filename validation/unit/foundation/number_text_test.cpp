@@ -2,7 +2,6 @@
 
 #include <clocale>
 
-#include "exactff/error.h"
 #include "kernel/numbers.h"
 #include "support/test.h"
 #include "text/csv_dialect.h"
@@ -106,15 +105,12 @@ TEST(CsvLines, LieAcrossBlocks) {
 
 TEST(CsvLines, RefuseWhatIsNoText) {
   const TemporaryDirectory directory;
-  const auto refusal = [&](const std::filesystem::path& path) -> std::string {
-    try {
+  const auto refusal = [&](const std::filesystem::path& path) {
+    return complaint([&] {
       text::CsvLines lines(path, "a CSV file");
       for (std::string_view line; lines.next(line);) {
       }
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return {};
+    });
   };
   using namespace std::string_literals;
   EXPECT_HOLDS(refusal(directory.path()), "is a folder");

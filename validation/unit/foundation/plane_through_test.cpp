@@ -1,7 +1,5 @@
 // Planes that are prepared for the sides of many points: the exact signs, and boxes on the safe side.
 #include "kernel/filter.h"
-#include "support/random_scenes.h"
-#include "support/shapes.h"
 #include "support/test.h"
 
 namespace exactff::validation {

@@ -1,8 +1,4 @@
 // Tables: what is written is read back to the same bits, in every format; what is damaged or old is refused.
-#include "exactff/table.h"
-
-#include "exactff/error.h"
-#include "support/random_scenes.h"
 #include "support/test.h"
 #include "table/csv.h"
 #include "table/fields.h"

@@ -3,8 +3,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "support/random_scenes.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "text/csv_lines.h"
 #include "text/encoding.h"

@@ -8,9 +8,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "exactff/adaptive.h"
-#include "exactff/exact.h"
-#include "exactff/jobs.h"
 #include "files/parallel.h"
 #include "generate/families.h"
 #include "scene/closed_surfaces.h"

@@ -4,7 +4,6 @@
 
 #include <csignal>
 
-#include "exactff/error.h"
 #include "files/file.h"
 #include "page/output_folder.h"
 #include "support/test.h"

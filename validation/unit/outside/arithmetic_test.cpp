@@ -8,22 +8,8 @@
 #endif
 
 #include "check/report.h"
-#include "exactff/adaptive.h"
-#include "exactff/check.h"
-#include "exactff/exact.h"
-#include "exactff/exr.h"
-#include "exactff/methods.h"
-#include "exactff/models.h"
-#include "exactff/receiver.h"
-#include "exactff/scene_files.h"
-#include "exactff/study.h"
-#include "exactff/truth.h"
-#include "exactff/view.h"
-#include "exactff/view_factors.h"
 #include "report/report.h"
 #include "stress/stress.h"
-#include "support/random_scenes.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "unit/reports/study_support.h"
 
@@ -35,27 +21,8 @@ struct Setting {
   std::function<void()> set;
 };
 
-// One kind of setting at a time.
-std::vector<Setting> single_settings() {
-  std::vector<Setting> settings = {{"upward", [] { std::fesetround(FE_UPWARD); }},
-                                   {"downward", [] { std::fesetround(FE_DOWNWARD); }},
-                                   {"toward zero", [] { std::fesetround(FE_TOWARDZERO); }}};
-#ifdef __SSE2__
-  settings.push_back({"flush to zero", [] { _mm_setcsr(_mm_getcsr() | 0x8000U); }});
-  settings.push_back({"denormals are zero", [] { _mm_setcsr(_mm_getcsr() | 0x0040U); }});
-#endif
-#ifdef __GLIBC__
-  settings.push_back({"trapped divisions by zero", [] { feenableexcept(FE_DIVBYZERO); }});
-  settings.push_back({"trapped invalid operations", [] { feenableexcept(FE_INVALID); }});
-  settings.push_back({"trapped overflows", [] { feenableexcept(FE_OVERFLOW); }});
-  settings.push_back({"trapped underflows", [] { feenableexcept(FE_UNDERFLOW); }});
-  settings.push_back({"trapped inexact results", [] { feenableexcept(FE_INEXACT); }});
-#endif
-  return settings;
-}
-
-// All settings at once.
-std::vector<Setting> joint_settings() {
+// Everything at once, in each rounding mode.
+std::vector<Setting> all_settings() {
   std::vector<Setting> settings;
   for (const int rounding : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
     settings.push_back({"all at once", [rounding] {
@@ -184,11 +151,11 @@ using Call = std::function<std::string()>;
 // Under each setting, the call must give the same text as under the default setting. Files are read afterwards, and
 // their names are made before, because the standard library also computes under the traps.
 void expect_the_same(
-    const std::vector<Setting>& settings, const Call& call, const Call& read = [] { return std::string(); }) {
+    const Call& call, const Call& read = [] { return std::string(); }) {
   std::string expected = call();
   expected += read();
   EXPECT_NE(expected, "");
-  for (const Setting& setting : settings) {
+  for (const Setting& setting : all_settings()) {
     std::fenv_t standard;
     std::fegetenv(&standard);
     const auto usual = arithmetic_of_thread();
@@ -203,11 +170,6 @@ void expect_the_same(
     EXPECT_NE(before, usual) << setting.name;
     EXPECT_EQ(before, after) << setting.name;
   }
-}
-
-void expect_the_same(const Call& call) {
-  expect_the_same(single_settings(), call);
-  expect_the_same(joint_settings(), call);
 }
 
 TEST(ThreadsArithmetic, ChangesNoSceneAndNoExactValue) {
@@ -330,7 +292,7 @@ TEST(ThreadsArithmetic, ChangesNoTruthFile) {
     truth::merge(parts, merged, jobs::Existing::kReplace);
     return std::string();
   };
-  expect_the_same(joint_settings(), write, [&] { return text_of(whole) + text_of(merged); });
+  expect_the_same(write, [&] { return text_of(whole) + text_of(merged); });
 }
 
 // Points are read from an image, placed on their faces, valued, and the values are written and compared.
@@ -359,7 +321,7 @@ TEST(ThreadsArithmetic, ChangesNoImage) {
     const check::Report report = check::judge(images.truth, images.values, {.relative_mse = 1.0});
     return exr::exr_of(image) + check::json_text(report);
   };
-  expect_the_same(joint_settings(), write, [&] { return text_of(table) + text_of(values); });
+  expect_the_same(write, [&] { return text_of(table) + text_of(values); });
 }
 
 TEST(ThreadsArithmetic, ChangesNoCheck) {
@@ -404,7 +366,7 @@ TEST(ThreadsArithmetic, ChangesNoStudyAndNoStressReport) {
     EXPECT_FALSE(report::headlines(study).empty() || stress::headlines(stress).empty());  // these contain times
     return std::string();
   };
-  expect_the_same(joint_settings(), write, [&] {
+  expect_the_same(write, [&] {
     std::string text = stress_values;
     for (const char* file : {"values.csv", "methods.csv", "exact.csv", "summary.csv", "profile.csv"}) {
       text += text_of(study_folder / file);

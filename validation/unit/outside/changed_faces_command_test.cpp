@@ -52,17 +52,6 @@ class ChangedFaces : public testing::Test {
 
 const Words kBoth = {"--flip", "lamp", "--transparent", "pane"};
 
-TEST_F(ChangedFaces, PointTakesBoth) {
-  EXPECT_EQ(point({}).output, "0\n");
-  EXPECT_EQ(point({"--flip", "lamp"}).output, "0\n") << "the pane hides it";
-  EXPECT_EQ(point({"--transparent", "pane"}).output, "0\n") << "it looks up";
-  const Run both = point(kBoth);
-  EXPECT_TRUE(both.output.starts_with("0.03")) << both.output;
-  EXPECT_EQ(both.error, "");
-  EXPECT_EQ(point({"--flip", "lamp:1,floor", "--transparent", "pane:1"}).output, both.output);
-  EXPECT_EQ(point({"--flip", "lamp", "--flip", "floor", "--transparent", "pane"}).output, both.output);
-}
-
 TEST_F(ChangedFaces, BelongToTheRequestOfATruthFile) {
   EXPECT_EQ(truth(kBoth).exit_code, 0);
   const std::string whole = text_of(truth_);

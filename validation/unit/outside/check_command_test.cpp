@@ -1,6 +1,5 @@
 #include <nlohmann/json.hpp>
 
-#include "exactff/check.h"
 #include "files/numpy.h"
 #include "support/test.h"
 #include "text/phrases.h"

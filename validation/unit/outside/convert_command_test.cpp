@@ -1,6 +1,5 @@
 #include <sys/resource.h>
 
-#include "exactff/scene_files.h"
 #include "support/test.h"
 
 namespace exactff {

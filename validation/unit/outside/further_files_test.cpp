@@ -1,8 +1,6 @@
 // --npy and --vtk of truth, merge and compare: what is written, resumed, interrupted and refused.
-#include <cstring>
 #include <thread>
 
-#include "exactff/truth.h"
 #include "support/test.h"
 #include "table/csv.h"
 

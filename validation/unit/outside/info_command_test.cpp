@@ -125,6 +125,9 @@ TEST_F(Advice, OnReceiversThatSeeOnlyBacksIsTheirPlaceOnTheFace) {
                "x lies 0.5 behind 'floor' and sees nothing but backs. On it, with --at 1 1.5 0 --on floor, "
                "the form factor of 'lamp' is ");
   EXPECT_HOLDS(view, "--on floor, it sees 6 patches instead of 0");
+  EXPECT_HOLDS(
+      below({"point", room, "--source", "lamp"}, "-1e-7"),
+      "x lies 1e-07 behind 'floor', which then hides everything beyond it. With --on floor the form factor of");
   EXPECT_FALSE(holds(below({"view", room}, ".5"), "sees nothing but backs"));
   EXPECT_FALSE(holds(below({"view", room}, "5"), "sees nothing but backs")) << "above the ceiling";
 }

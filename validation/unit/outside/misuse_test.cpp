@@ -2,11 +2,6 @@
 // silent value.
 #include <stdexcept>
 
-#include "exactff/adaptive.h"
-#include "exactff/exact.h"
-#include "exactff/methods.h"
-#include "exactff/study.h"
-#include "exactff/truth.h"
 #include "kernel/statistics.h"
 #include "support/test.h"
 #include "unit/reports/study_support.h"

@@ -123,6 +123,10 @@ TEST_F(ReceiverFlags, AutoFindsTheFaces) {
   EXPECT_HOLDS(run.text, "\nc,,3,");
   EXPECT_HOLDS(truth({"--receivers", points, "--on", "auto:0.6"}).text, "\nc,floor,3,");
   EXPECT_HOLDS(refusal({"--receivers", points, "--on", "auto:x"}), "write, for example, --on auto:1e-4");
+  const std::string behind = directory_.write("behind.csv", "x,y,z,nx,ny,nz\n3,3,-1e-6,0,0,1\n").string();
+  const std::string told = truth({"--receivers", behind}).error;
+  EXPECT_HOLDS(told, " are given without a face, within ");
+  EXPECT_HOLDS(told, "look through it from behind, so it hides everything; --on auto places them on their faces");
 }
 
 TEST_F(ReceiverFlags, SamplesHaveASeedOfTheirOwn) {

@@ -1,7 +1,6 @@
 // Completion and help are written from the same option tables; the help serves as the reference.
 #include <regex>
 
-#include "exactff/models.h"
 #include "stress/stress.h"
 #include "support/test.h"
 

@@ -13,15 +13,10 @@ class StudyFileReader : public ::testing::Test {
   }
   // The problems of a file, without the name of its folder.
   std::string complaint(const std::string& text) const {
-    try {
-      (void)read(text);
-    } catch (const InputError& error) {
-      std::string said = error.what();
-      const std::string folder = directory_.path().string() + '/';
-      for (std::size_t at; (at = said.find(folder)) != std::string::npos;) said.erase(at, folder.size());
-      return said;
-    }
-    return {};
+    std::string said = validation::complaint([&] { (void)read(text); });
+    const std::string folder = directory_.path().string() + '/';
+    for (std::size_t at; (at = said.find(folder)) != std::string::npos;) said.erase(at, folder.size());
+    return said;
   }
 
   const TemporaryDirectory directory_;

@@ -1,8 +1,6 @@
 // exactff view as scripts use it.
 #include <nlohmann/json.hpp>
 
-#include "exactff/exact.h"
-#include "exactff/scene_files.h"
 #include "support/test.h"
 
 namespace exactff {

@@ -8,8 +8,6 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "exactff/scene_files.h"
-#include "support/shapes.h"
 #include "support/test.h"
 
 namespace exactff::matrix {

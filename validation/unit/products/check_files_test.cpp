@@ -2,8 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include "check/report.h"
-#include "exactff/check.h"
-#include "exactff/table.h"
 #include "support/test.h"
 #include "table/rows.h"
 #include "text/phrases.h"

@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include "check/report.h"
-#include "exactff/check.h"
 #include "files/numpy.h"
 #include "support/test.h"
 

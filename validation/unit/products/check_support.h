@@ -3,7 +3,6 @@
 
 #include <stdexcept>
 
-#include "exactff/check.h"
 #include "support/test.h"
 
 namespace exactff::check {

@@ -1,6 +1,4 @@
 // What a check finds: errors, their statistics, verdicts, matches, baselines, and what machines read.
-#include "exactff/check.h"
-
 #include <nlohmann/json.hpp>
 
 #include "check/report.h"

@@ -1,10 +1,5 @@
 // What is said about scenes that were modelled with a slip, and that nothing is said about others.
-#include "exactff/exact.h"
-#include "exactff/models.h"
-#include "exactff/scene_files.h"
-#include "exactff/slips.h"
 #include "models/rooms.h"
-#include "support/shapes.h"
 #include "support/test.h"
 
 namespace exactff::slips {

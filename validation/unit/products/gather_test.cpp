@@ -1,9 +1,4 @@
 // The light of given radiosities at points: in images, in truth files, over patches; files of solutions.
-#include "exactff/exr.h"
-#include "exactff/radiosity.h"
-#include "exactff/render.h"
-#include "exactff/truth.h"
-#include "support/shapes.h"
 #include "support/test.h"
 
 namespace exactff::radiosity {

@@ -1,7 +1,4 @@
 // Lightmaps against a search of all triangles in rationals, and against values at single points.
-#include "exactff/exact.h"
-#include "exactff/render.h"
-#include "exactff/scene_files.h"
 #include "kernel/numbers.h"
 #include "models/random.h"
 #include "support/test.h"

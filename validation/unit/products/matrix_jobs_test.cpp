@@ -4,8 +4,6 @@
 #include <csignal>
 #include <thread>
 
-#include "exactff/matrix.h"
-#include "support/shapes.h"
 #include "support/test.h"
 
 namespace exactff::matrix {

@@ -1,10 +1,5 @@
 // Matrices of view factors: what meets backs and what is open, sums of rows, files for other programs.
-#include "exactff/matrix.h"
-
-#include "exactff/exact.h"
-#include "exactff/scene_files.h"
 #include "matrix/rows.h"
-#include "support/shapes.h"
 #include "support/test.h"
 
 namespace exactff::matrix {
@@ -307,7 +302,6 @@ TEST(MatrixSums, OfCellsHoldTheFactorsOfTheirPatches) {
   const std::pair<Scene, double> scenes[] = {
       {generate::build(open_box()), 0.6},
       {read_scene(EXACTFF_DATA_DIR "/scenes/formats/test4.vs3"), 2.0},
-      {read_scene(EXACTFF_DATA_DIR "/scenes/cornell_box.obj"), 400.0},
   };
   for (const auto& [scene, length] : scenes) {
     const Scene cells = divided(scene, length).scene;

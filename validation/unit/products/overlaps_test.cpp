@@ -1,9 +1,4 @@
 // Fronts of different patches that lie on each other: what is found, what is said of it, and what is no overlap.
-#include "exactff/models.h"
-#include "exactff/receiver.h"
-#include "exactff/scene_files.h"
-#include "exactff/slips.h"
-#include "support/shapes.h"
 #include "support/test.h"
 
 namespace exactff::slips {
@@ -77,17 +72,6 @@ TEST(Overlaps, AreNotBetweenNeighboursThatTouch) {
   EXPECT_TRUE(all_overlaps(models::make_scene("teapot:segments=4")).empty());
   EXPECT_TRUE(
       all_overlaps(read_scene(EXACTFF_DATA_DIR "/scenes/cornell_box.obj", {.patches = PatchMode::kFaces})).empty());
-}
-
-TEST(Overlaps, OfTheSameCornersAreDoubledFaces) {
-  PlainScene plain;
-  add_tile(plain, "floor", 0, 0, 4, 4);
-  plain.add_ring(plain.patch("carpet"), {{4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {4, 0, 0}});
-  const Scene scene = generate::build(plain);
-  EXPECT_EQ(words_in(scene, Kind::kOverlappingFronts), "nothing");
-  EXPECT_NE(words_in(scene, Kind::kDoubledFaces), "nothing");
-  ASSERT_EQ(all_overlaps(scene).size(), 1U);
-  EXPECT_TRUE(all_overlaps(scene)[0].doubled);
 }
 
 TEST(Overlaps, ARoundingApartAreToldApart) {

@@ -1,14 +1,6 @@
 // Images of other programs: files, whole and damaged; visible points; the values of their pixels; comparisons.
-#include <cstring>
-
 #include "check/report.h"
-#include "exactff/error.h"
-#include "exactff/exr.h"
-#include "exactff/scene_files.h"
-#include "exactff/truth.h"
 #include "files/numpy.h"
-#include "support/random_scenes.h"
-#include "support/shapes.h"
 #include "support/test.h"
 
 namespace exactff {

@@ -1,7 +1,4 @@
 // Files of matrices for other programs, each read back.
-#include "exactff/matrix.h"
-#include "exactff/radiosity.h"
-#include "exactff/scene_files.h"
 #include "matrix/other_programs.h"
 #include "support/test.h"
 

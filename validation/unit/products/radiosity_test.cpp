@@ -1,11 +1,7 @@
 // Radiosities after all bounces: rooms and plates whose radiosities are known, the balance of light, the command.
-#include "exactff/radiosity.h"
-
 #include <nlohmann/json.hpp>
 
-#include "exactff/scene_files.h"
 #include "radiosity/narrowing.h"
-#include "support/shapes.h"
 #include "support/test.h"
 
 namespace exactff::radiosity {
@@ -152,19 +148,6 @@ PlainScene three_plates() {
   add(scene, "between", {{0.25, 0.25, 0.5}, {0.75, 0.25, 0.5}, {0.75, 0.75, 0.5}, {0.25, 0.75, 0.5}}, kUpperKd, {});
   add(scene, "wall", {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}}, kLowerKd, {});
   return scene;
-}
-
-TEST(RadiosityWidth, OfAFurnaceIsReachedAroundTheKnownValue) {
-  const Scene scene = generate::build(cube({0.5, 0.75, 0.0}, {1, 3, 0.1}));
-  const Options coarse{.factors = {.accuracy = 0.02}}, narrow{.factors = {.accuracy = 0.02}, .width = 2e-3};
-  EXPECT_GT(widest_bounds(solve(scene, coarse)).share, 2e-3);
-  const Solution solution = solve(scene, narrow);
-  EXPECT_LE(widest_bounds(solution).share, 2e-3);
-  EXPECT_GT(solution.computed_again, 0U);
-  for (std::size_t i = 0; i < 6; ++i) {
-    expect_holds(solution.channels[0].radiosity[i], 2.0, 2e-3 * 2.0);
-    expect_holds(solution.channels[1].radiosity[i], 12.0, 2e-3 * 12.0);
-  }
 }
 
 // Too coarse to prove that less light is reflected than arrives.

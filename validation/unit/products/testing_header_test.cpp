@@ -3,7 +3,6 @@
 
 #include <gtest/gtest-spi.h>
 
-#include "exactff/exact.h"
 #include "exactff/testing.h"
 
 namespace exactff {

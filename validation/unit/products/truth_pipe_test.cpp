@@ -1,6 +1,4 @@
 // exactff truth in pipes: standard input and output, truth files as receivers, unit normals.
-#include "exactff/table.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "truth/columns.h"
 

@@ -3,8 +3,6 @@
 
 #include <atomic>
 
-#include "exactff/scene_files.h"
-#include "exactff/truth.h"
 #include "jobs/blocks.h"
 #include "jobs/compute.h"
 #include "jobs/journal.h"

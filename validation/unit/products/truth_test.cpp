@@ -1,7 +1,4 @@
 // The rows of a truth file, their head, their statuses, and what a run tells about them.
-#include "exactff/truth.h"
-
-#include "exactff/view.h"
 #include "support/test.h"
 #include "truth/rows.h"
 #include "unit/products/truth_support.h"

@@ -3,7 +3,6 @@
 
 #include <variant>
 
-#include "exactff/study.h"
 #include "study/settings.h"
 #include "support/test.h"
 #include "unit/reports/study_support.h"
@@ -14,23 +13,12 @@ namespace {
 // A lamp [-1, 1]^2 at height 2 and half a plane at height 1, x > 0: the floor sees all of the lamp where x < -1 and
 // nothing where x > 1.
 Scene half_plane() {
-  SceneBuilder builder("half plane");
-  const MaterialId grey = builder.add_material({"grey", {0.5, 0.5, 0.5}, {}});
-  const MaterialId lamp = builder.add_material({"lamp", {0, 0, 0}, {2, 2, 2}});
-  const auto rectangle = [&](const char* name, MaterialId material, double x0, double x1, double y, double z,
-                             bool down) {
-    const std::uint32_t a = builder.add_vertex({x0, -y, z});
-    builder.add_vertex({x1, -y, z});
-    builder.add_vertex({x1, y, z});
-    builder.add_vertex({x0, y, z});
-    std::vector<std::uint32_t> ring = {a, a + 1, a + 2, a + 3};
-    if (down) std::ranges::reverse(ring);
-    builder.add_face(builder.patch(name), material, {ring});
-  };
-  rectangle("floor", grey, -4, 4, 1, 0, false);
-  rectangle("lamp", lamp, -1, 1, 1, 2, true);
-  rectangle("half", grey, 0, 50, 50, 1, false);
-  return builder.build();
+  const Rgb grey{0.5, 0.5, 0.5};
+  PlainScene plain;
+  add(plain, "floor", {{-4, -1, 0}, {4, -1, 0}, {4, 1, 0}, {-4, 1, 0}}, grey, {});
+  add(plain, "lamp", {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}}, {}, {2, 2, 2});
+  add(plain, "half", {{0, -50, 1}, {50, -50, 1}, {50, 50, 1}, {0, 50, 1}}, grey, {});
+  return generate::build(plain);
 }
 
 // A study up to its exact values, on a grid of the floor.

@@ -1,8 +1,6 @@
 // The pictures of a scene's chapter.
-#include <gtest/gtest.h>
-
-#include "exactff/models.h"
 #include "report/report.h"
+#include "support/test.h"
 #include "unit/reports/study_support.h"
 
 namespace exactff::report {

@@ -1,5 +1,4 @@
 // Finished work in a file: added records are read back, and torn, damaged or foreign files do no harm.
-#include "exactff/study.h"
 #include "jobs/kept_work.h"
 #include "report/report.h"
 #include "support/test.h"

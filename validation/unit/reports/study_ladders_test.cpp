@@ -1,5 +1,4 @@
 // What a comparison of methods runs, ladders of settings at chosen receivers, and how its errors are summed up.
-#include "exactff/study.h"
 #include "kernel/statistics.h"
 #include "study/runs.h"
 #include "study/settings.h"
@@ -54,14 +53,7 @@ TEST(ChooseReceivers, TakesAThirdFromThoseThatSeeAll) {
 }
 
 TEST(Settings, ImpossibleValuesAreInputErrors) {
-  const auto refused = [](Sweeps sweeps) {
-    try {
-      complete(sweeps, {1.0, 1.0, true});
-    } catch (const InputError&) {
-      return true;
-    }
-    return false;
-  };
+  const auto refused = [](Sweeps sweeps) { return !complaint([&] { complete(sweeps, {1.0, 1.0, true}); }).empty(); };
   EXPECT_TRUE(refused({.eps_b = {-1.0}}));
   EXPECT_TRUE(refused({.eps_b = {std::numeric_limits<double>::infinity()}}));
   EXPECT_TRUE(refused({.eps_a = {-1.0}}));

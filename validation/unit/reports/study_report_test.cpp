@@ -1,7 +1,6 @@
 // The report on a study: figures, pages, and the folder that they are written to.
 #include <unistd.h>
 
-#include "exactff/study.h"
 #include "page/gnuplot.h"
 #include "page/output_folder.h"
 #include "report/report.h"

@@ -1,7 +1,6 @@
 // A small room, and requests for studies of it that take no time, for the tests of the study.
 #pragma once
 
-#include "exactff/study.h"
 #include "report/report.h"
 #include "support/test.h"
 
@@ -9,22 +8,15 @@ namespace exactff::validation {
 
 // A floor, a lamp above it and a plate in between.
 inline Scene small_room(bool with_plate) {
-  SceneBuilder builder("room");
-  const MaterialId grey = builder.add_material({"grey", {0.5, 0.25, 0.5}, {}});
-  const MaterialId lamp = builder.add_material({"lamp", {1, 1, 1}, {10, 20, 30}});
-  const auto square = [&](const char* name, MaterialId material, double half, double z, bool down) {
-    const std::uint32_t first = builder.add_vertex({-half, -half, z});
-    builder.add_vertex({half, -half, z});
-    builder.add_vertex({half, half, z});
-    builder.add_vertex({-half, half, z});
-    std::vector<std::uint32_t> ring = {first, first + 1, first + 2, first + 3};
-    if (down) ring = {first + 3, first + 2, first + 1, first};
-    builder.add_face(builder.patch(name), material, {ring});
+  const auto square = [](double half, double z) {
+    return std::vector<Vec3>{{-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}};
   };
-  square("floor", grey, 2.0, 0.0, false);
-  square("lamp", lamp, 0.5, 2.0, true);
-  if (with_plate) square("plate", grey, 0.3, 1.0, false);
-  return builder.build();
+  const std::vector<Vec3> up = square(0.5, 2.0);
+  PlainScene plain;
+  add(plain, "floor", square(2.0, 0.0), {0.5, 0.25, 0.5}, {});
+  add(plain, "lamp", {up.rbegin(), up.rend()}, {1, 1, 1}, {10, 20, 30});
+  if (with_plate) add(plain, "plate", square(0.3, 1.0), {0.5, 0.25, 0.5}, {});
+  return generate::build(plain);
 }
 
 // Of the adaptive algorithm and the exact method only.

@@ -1,6 +1,4 @@
 // The study as a whole: values, tables, threads, what it refuses.
-#include "exactff/study.h"
-
 #include "report/report.h"
 #include "study/settings.h"
 #include "study/sight.h"

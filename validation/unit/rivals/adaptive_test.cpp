@@ -1,9 +1,6 @@
-#include "exactff/adaptive.h"
-
 #include <thread>
 
 #include "generate/families.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "unit/rivals/sampled_scenes.h"
 

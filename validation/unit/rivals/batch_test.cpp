@@ -3,8 +3,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "exactff/methods.h"
-#include "exactff/models.h"
 #include "support/test.h"
 
 namespace exactff {

@@ -4,7 +4,6 @@
 #include "exact/visible_share.h"
 #include "methods/area_sampling.h"
 #include "methods/hemicube.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "unit/rivals/methods_support.h"
 #include "unit/rivals/moments.h"
@@ -167,19 +166,6 @@ TEST(Hemicube, FormFactorsInAClosedRoomSumToOne) {
       EXPECT_NEAR(total, 1.0, 1e-12);
       EXPECT_EQ(pixels, estimate(room, receiver, "floor", choice).counters["pixels drawn"]);
     }
-  }
-}
-
-// Triangles with shared sides cover every pixel exactly once: a tessellated source has the pixels of the whole source.
-TEST(Hemicube, TrianglesThatShareSidesTileThePixels) {
-  PlainScene whole, cut;
-  const std::vector<Vec3> square = square_above(0.75, 1.0);  // sides through pixel centres at n = 16
-  add(whole, "source", square);
-  const Vec3 middle{0.0625, -0.1875, 1.0};
-  for (std::size_t i = 0; i < 4; ++i) add(cut, "source", {square[i], square[(i + 1) % 4], middle});
-  for (const char* choice :
-       {"hemicube:resolution=16", "hemicube:resolution=100", "hemicube:resolution=64,rotation=45"}) {
-    EXPECT_NEAR(value(cut, choice), value(whole, choice), 1e-15) << choice;
   }
 }
 

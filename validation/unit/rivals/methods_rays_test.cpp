@@ -1,6 +1,5 @@
 // Nettle, Wallace and area sampling: properties that theory predicts.
 #include "methods/area_sampling.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "unit/rivals/methods_support.h"
 #include "unit/rivals/moments.h"

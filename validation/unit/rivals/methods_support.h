@@ -1,9 +1,6 @@
 // Short ways to a method's value for the tests of the methods.
 #pragma once
 
-#include "exactff/adaptive.h"
-#include "exactff/exact.h"
-#include "exactff/methods.h"
 #include "generate/families.h"
 #include "support/test.h"
 #include "unit/rivals/sampled_scenes.h"

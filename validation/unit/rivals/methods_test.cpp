@@ -1,5 +1,3 @@
-#include "exactff/methods.h"
-
 #include <thread>
 
 #include "support/test.h"

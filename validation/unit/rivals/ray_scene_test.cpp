@@ -1,8 +1,6 @@
 // Scenes of rays, the ends of rays, and closed forms of the adaptive algorithm.
 #include "adaptive/sampled_scene.h"
 #include "adaptive/sub_patch.h"
-#include "exactff/adaptive.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "unit/rivals/sampled_scenes.h"
 

@@ -1,8 +1,6 @@
 // Small scenes for the tests of the sampled module.
 #pragma once
 
-#include "generate/plain_scene.h"
-#include "support/shapes.h"
 #include "support/test.h"
 
 namespace exactff::validation {

@@ -1,9 +1,7 @@
 // Finds closed surfaces; removing their back faces changes no result.
 #include "scene/closed_surfaces.h"
 
-#include "exactff/exact.h"
 #include "scene/panels.h"
-#include "support/shapes.h"
 #include "support/solve.h"
 #include "support/test.h"
 

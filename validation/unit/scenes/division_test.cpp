@@ -1,8 +1,4 @@
-#include "exactff/exact.h"
-#include "exactff/models.h"
-#include "exactff/scene_files.h"
 #include "kernel/vec.h"
-#include "support/random_scenes.h"
 #include "support/test.h"
 
 namespace exactff {

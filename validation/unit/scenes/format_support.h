@@ -1,19 +1,14 @@
 // Short forms for the tests of the readers.
 #pragma once
 
-#include "exactff/scene.h"
 #include "support/test.h"
 
 namespace exactff::validation {
 
 template <class Read>
 std::string error_of(const Read& read) {
-  try {
-    (void)read();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  const std::string said = complaint([&] { (void)read(); });
+  return said.empty() ? "no error" : said;
 }
 
 inline std::string warnings_of(const Scene& scene) {

@@ -1,7 +1,6 @@
 // glTF files: what they mean, against rational arithmetic and OBJ files of the same scene, and what is refused.
 #include <gmpxx.h>
 
-#include "exactff/scene_files.h"
 #include "support/gltf_file.h"
 #include "support/test.h"
 #include "unit/scenes/format_support.h"

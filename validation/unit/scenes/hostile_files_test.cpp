@@ -6,8 +6,6 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
-#include "exactff/receiver.h"
-#include "exactff/scene_files.h"
 #include "scene/triangulation.h"
 #include "support/test.h"
 #include "text/encoding.h"

@@ -1,8 +1,3 @@
-#include "exactff/models.h"
-
-#include "exactff/exact.h"
-#include "exactff/scene_files.h"
-#include "exactff/view.h"
 #include "models/registry.h"
 #include "support/test.h"
 

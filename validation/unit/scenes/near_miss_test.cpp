@@ -1,8 +1,5 @@
 // One unit in the last place decides: an occluder hides if it is that much nearer than the source or inside the shaft,
 // and hides nothing on the limit or beyond it. The receivers' coordinates make every difference round.
-#include "exactff/exact.h"
-#include "exactff/receiver.h"
-#include "support/shapes.h"
 #include "support/solve.h"
 #include "support/test.h"
 

@@ -1,4 +1,3 @@
-#include "exactff/scene_files.h"
 #include "support/test.h"
 #include "unit/scenes/format_support.h"
 

@@ -1,10 +1,7 @@
 // Patches from geometry, and names for faces.
-#include "exactff/scene.h"
-#include "exactff/scene_files.h"
-#include "support/random_scenes.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "support/transform.h"
+#include "unit/scenes/format_support.h"
 
 namespace exactff::validation {
 namespace {
@@ -14,12 +11,6 @@ PlainScene boxes(const std::vector<std::pair<Vec3, Vec3>>& corners) {
   PlainScene scene;
   for (const auto& [low, high] : corners) add_box(scene, "things", low, high);
   return in_triangles(scene);
-}
-
-std::vector<std::string> names_of(const Scene& scene) {
-  std::vector<std::string> names;
-  for (const Patch& patch : scene.patches()) names.push_back(patch.name);
-  return names;
 }
 
 std::size_t count(const PlainScene& scene, const std::string& patches) {
@@ -36,7 +27,7 @@ TEST(PatchesFromGeometry, AreThePlanesTheSmoothAndTheConnected) {
   EXPECT_EQ(count(two, "smooth:90.001"), 2U);
   EXPECT_EQ(count(two, "parts"), 2U);
   const Scene scene = generate::build(two, {}, scene_options("planes"));
-  EXPECT_EQ(names_of(scene)[0], "things/1");
+  EXPECT_EQ(patch_names(scene)[0], "things/1");
   const std::vector<PatchSummary> rows = summarise(scene);
   for (std::size_t i = 1; i < rows.size(); ++i) EXPECT_LE(rows[i].area, rows[i - 1].area);
   // Six sides have an area of 6: the lowest corners decide.
@@ -44,7 +35,7 @@ TEST(PatchesFromGeometry, AreThePlanesTheSmoothAndTheConnected) {
   EXPECT_EQ(rows[0].high, (Vec3{0, 2, 3}));
   EXPECT_EQ(rows[0].centre, (Vec3{0, 1, 1.5}));
   EXPECT_EQ(scene.select_all("things").size(), 12U);
-  EXPECT_EQ(names_of(with_patches(generate::build(two), scene_options("planes"))), names_of(scene));
+  EXPECT_EQ(patch_names(with_patches(generate::build(two), scene_options("planes"))), patch_names(scene));
 }
 
 // A sheet folded along an edge.
@@ -121,7 +112,7 @@ TEST(FaceNames, AreThoseThatSelectorsFind) {
   const Scene both = with_names(scene, std::vector<FaceName>{{"top", "normal:0,0,1"}, {"left", "box:0,0,0,1,2,3"}});
   EXPECT_EQ(both.faces_of(both.select("top")).size(), 2U);
   EXPECT_EQ(both.faces_of(both.select("left")).size(), 12U);
-  EXPECT_EQ(names_of(both), (std::vector<std::string>{"things", "top", "left"}));
+  EXPECT_EQ(patch_names(both), (std::vector<std::string>{"things", "top", "left"}));
 }
 
 TEST(FaceNames, RefuseWhatCannotBeRead) {
@@ -155,7 +146,7 @@ TEST(FaceNames, ComeFromFilesAndFlagsAndStayInWhatIsWritten) {
   const Scene made = read_scene(out);
   EXPECT_EQ(made.faces_of(made.select("tops")).size(), 2U);
   EXPECT_EQ(made.faces_of(made.select("tall_block")).size(), 4U);
-  const auto patches = names_of(made);
+  const auto patches = patch_names(made);
   EXPECT_TRUE(std::ranges::find(patches, "light") == patches.end());
   const ProgramRun info = run_exactff({"info", room, "--patches", "parts"});
   EXPECT_HOLDS(info.output, "tall_block/1");

@@ -1,5 +1,4 @@
 // PLY and OFF files: what they mean, and what is refused.
-#include "exactff/scene_files.h"
 #include "support/test.h"
 #include "unit/scenes/format_support.h"
 

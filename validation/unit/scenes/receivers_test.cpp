@@ -1,7 +1,4 @@
 // Grids of receivers and receiver files.
-#include "exactff/receiver.h"
-#include "exactff/scene.h"
-#include "exactff/scene_files.h"
 #include "kernel/numbers.h"
 #include "support/test.h"
 
@@ -57,20 +54,12 @@ std::vector<std::string> ids_of(const std::vector<Receiver>& receivers) {
 // Three unit squares.
 Polygon letter_l() { return polygon({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}); }
 
-Scene one_face(const std::vector<Vec3>& vertices, std::vector<Ring> rings, BadFaces bad = BadFaces::kReject) {
-  SceneBuilder builder("test", {bad, PatchMode::kGroups});
-  for (const Vec3& v : vertices) builder.add_vertex(v);
-  const MaterialId material = builder.add_material({});
-  builder.add_face(builder.patch("face"), material, std::move(rings));
-  return builder.build();
-}
-
 std::vector<Receiver> grid(const Scene& scene, int u, int v) {
   return grid_receivers(scene, scene.select("face"), {u, v});
 }
 
 TEST(GridReceivers, CentresOfARectangleAreExactAndURunsFastest) {
-  const Scene scene = one_face({{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {0, 2, 0}}, {{0, 1, 2, 3}});
+  const Scene scene = scene_of({polygon({{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {0, 2, 0}})});
   const auto receivers = grid(scene, 2, 2);
   ASSERT_EQ(receivers.size(), 4U);
   EXPECT_EQ(receivers[0].point, (Vec3{1, 0.5, 0}));
@@ -80,19 +69,9 @@ TEST(GridReceivers, CentresOfARectangleAreExactAndURunsFastest) {
   EXPECT_EQ(receivers[3].id, "r2c2");
 }
 
-TEST(GridReceivers, ANonPlanarQuadrilateralHasItsCentreOnATriangle) {
-  const Scene scene = one_face({{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0}}, {{0, 1, 2, 3}});
-  const auto receivers = grid(scene, 1, 1);
-  ASSERT_EQ(receivers.size(), 1U);
-  const Vec3& point = receivers[0].point;  // (1/2, 1/2, 1/4), put on the fold between the triangles
-  for (const double c : {point.x, point.y, point.z}) EXPECT_NEAR(c, 5.0 / 12.0, 0x1p-48);
-  EXPECT_EQ(receivers[0].on, std::vector{FaceId{0}});
-}
-
 TEST(GridReceivers, AnotherFaceKeepsTheCentresInsideItsBoundingRectangle) {
   // An L: the quarter with large x and y is missing.
-  const Scene scene =
-      one_face({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}, {{0, 1, 2, 3, 4, 5}});
+  const Scene scene = scene_of({letter_l()});
   const auto receivers = grid(scene, 2, 2);
   ASSERT_EQ(receivers.size(), 3U);
   EXPECT_EQ(receivers[0].point, (Vec3{0.5, 0.5, 0}));
@@ -103,16 +82,16 @@ TEST(GridReceivers, AnotherFaceKeepsTheCentresInsideItsBoundingRectangle) {
 
 TEST(GridReceivers, ACentreOnAnEdgeOrACornerIsNotInside) {
   // Grid 4x4 of the same L has centres at odd quarters; 3x3 has (1, 1), the inner corner, and points on x = 1.
-  const Scene scene =
-      one_face({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}, {{0, 1, 2, 3, 4, 5}});
+  const Scene scene = scene_of({letter_l()});
   EXPECT_EQ(grid(scene, 4, 4).size(), 12U);
   EXPECT_EQ(grid(scene, 1, 1).size(), 0U);
   EXPECT_EQ(grid(scene, 3, 3).size(), 5U);
 }
 
 TEST(GridReceivers, HolesAreLeftOut) {
-  const Scene scene = one_face({{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {1, 1, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}},
-                               {{0, 1, 2, 3}, {4, 5, 6, 7}});
+  const Polygon frame{{{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {1, 1, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}},
+                      {{0, 1, 2, 3}, {4, 5, 6, 7}}};
+  const Scene scene = scene_of({frame});
   const auto receivers = grid(scene, 3, 3);
   EXPECT_EQ(receivers.size(), 8U);
   for (const Receiver& receiver : receivers) EXPECT_NE(receiver.point, (Vec3{1.5, 1.5, 0}));
@@ -120,7 +99,7 @@ TEST(GridReceivers, HolesAreLeftOut) {
 
 TEST(GridReceivers, TheRectangleFollowsTheFirstEdgeInItsPlane) {
   // A right triangle in the plane x = 7 whose first edge runs along +z; v = Newell x u.
-  const Scene scene = one_face({{7, 0, 0}, {7, 0, 4}, {7, -4, 0}}, {{0, 1, 2}});
+  const Scene scene = scene_of({polygon({{7, 0, 0}, {7, 0, 4}, {7, -4, 0}})});
   const auto receivers = grid(scene, 4, 4);
   EXPECT_EQ(receivers.size(), 6U);  // strictly below the diagonal
   EXPECT_EQ(receivers[0].point, (Vec3{7, -0.5, 0.5}));

@@ -1,6 +1,4 @@
 // Regions: a flat surface gives the same receivers, however it is cut into faces.
-#include "exactff/exact.h"
-#include "exactff/receiver.h"
 #include "support/test.h"
 
 namespace exactff {

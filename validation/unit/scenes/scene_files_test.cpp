@@ -1,11 +1,6 @@
 // Which format a file has, what the writers keep, and what they say they lose.
-#include "exactff/scene_files.h"
-
 #include <gmpxx.h>
 
-#include "exactff/exact.h"
-#include "support/random_scenes.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "unit/scenes/format_support.h"
 

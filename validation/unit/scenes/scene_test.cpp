@@ -1,5 +1,3 @@
-#include "exactff/scene.h"
-
 #include "support/test.h"
 
 namespace exactff {

@@ -1,7 +1,6 @@
 // The bounding-volume tree never loses a piece that may meet a half-space.
 #include "scene/shaft_tree.h"
 
-#include "support/shapes.h"
 #include "support/test.h"
 
 namespace exactff {

@@ -1,6 +1,4 @@
 // Texture coordinates survive what is done to faces.
-#include "exactff/models.h"
-#include "exactff/scene_files.h"
 #include "support/test.h"
 #include "unit/scenes/format_support.h"
 

@@ -1,7 +1,5 @@
 // Transparent patches: no method lets them hide anything, and they may still be sources and have receivers on them.
-#include "exactff/scene_files.h"
 #include "scene/closed_surfaces.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "unit/rivals/methods_support.h"
 

@@ -1,5 +1,3 @@
-#include "exactff/exact.h"
-#include "exactff/scene_files.h"
 #include "formats/view3d.h"
 #include "support/test.h"
 #include "unit/scenes/format_support.h"

@@ -5,11 +5,6 @@
 #include <deque>
 
 #include "exact/quick_tier.h"
-#include "exactff/exact.h"
-#include "exactff/models.h"
-#include "exactff/scene_files.h"
-#include "exactff/view.h"
-#include "support/shapes.h"
 #include "support/test.h"
 
 namespace {

@@ -4,13 +4,6 @@
 #include <csignal>
 #include <thread>
 
-#include "exactff/adaptive.h"
-#include "exactff/exact.h"
-#include "exactff/jobs.h"
-#include "exactff/methods.h"
-#include "exactff/models.h"
-#include "exactff/receiver.h"
-#include "exactff/view.h"
 #include "files/parallel.h"
 #include "support/test.h"
 #include "unit/outside/sanitized.h"
@@ -60,11 +53,12 @@ TEST_F(OnePair, CanBeCancelledAtEveryQuestion) {
 }
 
 TEST_F(OnePair, OfEveryMethodCanBeCancelled) {
+  const Scene scene = models::make_scene("soup:n=800,floor=0");
   for (const char* text : {"exact", "exact:engine=boolean", "adaptive:eps_B=1e-6", "hemicube:resolution=64",
                            "nettle:splits=16,rays=256", "wallace:splits=64", "area-sampling:samples=4096"}) {
     const methods::Choice choice = methods::parse(text);
-    const auto on_scene = choice.method->prepare(scene_);
-    const auto source = on_scene->prepare_source(scene_.select("source"));
+    const auto on_scene = choice.method->prepare(scene);
+    const auto source = on_scene->prepare_source(scene.select("source"));
     const auto evaluator = on_scene->configure(choice.settings);
     const double undisturbed = evaluator->form_factor(kUp, *source).form_factor;
     Patience patience(1);

@@ -1,7 +1,5 @@
 // Certified view factors: the quadrature's remainder and the formula in discs. view_factor_test.cpp has known values.
-#include "exactff/view_factors.h"
 #include "kernel/gauss.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "unit/solver/known_factors.h"
 #include "unit/solver/visit_cells.h"

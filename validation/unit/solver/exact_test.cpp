@@ -1,10 +1,5 @@
 // The result of the exact method: status, bounds, decimals, cutters, fractions, bad receivers, drawings.
-#include "exactff/exact.h"
-
-#include "exactff/enclosure.h"
 #include "kernel/ball.h"
-#include "support/random_scenes.h"
-#include "support/shapes.h"
 #include "support/solve.h"
 #include "support/test.h"
 

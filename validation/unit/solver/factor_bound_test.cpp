@@ -1,9 +1,5 @@
 // What is known of a pair before any cell: a bound of its form factors, and the shaft between its boxes.
-#include "exactff/exact.h"
-#include "exactff/receiver.h"
 #include "kernel/vec.h"
-#include "support/random_scenes.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "unit/solver/factor_at.h"
 #include "view_factors/factor_bounds.h"

@@ -3,7 +3,6 @@
 
 #include "kernel/ball.h"
 #include "kernel/vec.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "unit/solver/visit_cells.h"
 #include "view_factors/quick_formula.h"

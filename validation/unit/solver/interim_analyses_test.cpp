@@ -2,10 +2,8 @@
 // take.
 #include "view_factors/interim_analyses.h"
 
-#include "exactff/scene.h"
 #include "kernel/split_mix.h"
 #include "kernel/vec.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/prepared_patch.h"

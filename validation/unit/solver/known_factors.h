@@ -1,8 +1,6 @@
 // Scenes of few patches whose view factors are known.
 #pragma once
 
-#include "generate/plain_scene.h"
-#include "support/shapes.h"
 #include "support/test.h"
 
 namespace exactff::validation {

@@ -2,7 +2,6 @@
 #include <gmpxx.h>
 
 #include "kernel/filter.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "view_factors/cell.h"
 

@@ -1,6 +1,4 @@
 // A patch of triangles in one plane has the parts, and the factors, of the polygon that they make.
-#include "exactff/view_factors.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "view_factors/prepared_patch.h"
 

@@ -1,7 +1,5 @@
 // Crossings with the source's plane: the double-double result is always right, or it declines. EXACTFF_TEST_SCALE
 // multiplies the number of segments.
-#include "support/random_scenes.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "visibility/source_plane.h"
 

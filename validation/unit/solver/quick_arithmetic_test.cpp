@@ -1,8 +1,6 @@
 // Arithmetic in double-double with running error bounds: numbers, vectors and angles.
 #include "contour/quick_arithmetic.h"
 
-#include "support/random_scenes.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "unit/solver/quick_contour_support.h"
 

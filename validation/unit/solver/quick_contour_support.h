@@ -5,8 +5,6 @@
 #include "contour/contour.h"
 #include "contour/quick_arithmetic.h"
 #include "contour/quick_contour.h"
-#include "exactff/enclosure.h"
-#include "generate/random.h"
 #include "support/test.h"
 
 namespace exactff::contour {

@@ -2,12 +2,7 @@
 // random loops.
 #include "contour/quick_contour.h"
 
-#include <gtest/gtest.h>
-
 #include "contour/contour.h"
-#include "exactff/enclosure.h"
-#include "support/random_scenes.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "unit/solver/quick_contour_support.h"
 

@@ -4,9 +4,7 @@
 #include <iterator>
 #include <ostream>
 
-#include "exactff/scene.h"
 #include "kernel/vec.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/prepared_patch.h"
@@ -108,17 +106,6 @@ class StrataOf : public testing::TestWithParam<Patch> {
     return sum / whole;
   }
 };
-
-TEST_P(StrataOf, AreAtLeastAsManyAsAskedForAndShareTheArea) {
-  for (const std::size_t count : {1, 36, 37, 500}) {
-    const Strata strata = strata_of(parts_, count);
-    EXPECT_GE(strata.strata.size(), count);
-    EXPECT_LE(strata.strata.size(), 2 * count + 10);
-    EXPECT_NEAR(strata.area, area_of(parts_), 1e-12 * strata.area);
-    const double largest = std::ranges::max(strata.strata, {}, &Stratum::area).area / strata.area;
-    EXPECT_LE(largest, 1.00001 / static_cast<double>(count));
-  }
-}
 
 // The mean over many analyses, within five standard errors; and what the analyses say of their variance.
 TEST_P(StrataOf, MeansOfSquaresAreUnbiased) {

@@ -1,13 +1,6 @@
 // View factors from patch to patch with known values.
 #include <stdexcept>
 
-#include "exactff/exact.h"
-#include "exactff/matrix.h"
-#include "exactff/models.h"
-#include "exactff/receiver.h"
-#include "exactff/scene_files.h"
-#include "exactff/view_factors.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "unit/solver/known_factors.h"
 

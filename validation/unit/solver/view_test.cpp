@@ -1,8 +1,4 @@
 // The whole view by hand: scenes where what is seen is known, each judged in full (support/view_judge.h).
-#include "exactff/view.h"
-
-#include "exactff/scene_files.h"
-#include "support/shapes.h"
 #include "support/test.h"
 #include "support/view_judge.h"
 

@@ -1,12 +1,6 @@
 // The exact method step by step: the outcome, the candidates, and which faces hide something.
-#include <gtest/gtest.h>
-
 #include <stdexcept>
 
-#include "exactff/exact.h"
-#include "exactff/models.h"
-#include "exactff/region.h"
-#include "support/shapes.h"
 #include "support/solve.h"
 #include "support/test.h"
 #include "visibility/source_plane.h"
