@@ -19,7 +19,7 @@
 #include "support/oracle_check.h"
 #include "support/random_scenes.h"
 #include "support/solve.h"
-#include "whole_view/referee.h"
+#include "whole_view/light.h"
 
 namespace exactff::validation {
 namespace {

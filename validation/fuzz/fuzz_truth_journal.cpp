@@ -14,7 +14,7 @@
 #include "fuzz/complaints.h"
 #include "fuzz/edits.h"
 #include "generate/plain_scene.h"
-#include "jobs/blocks.h"
+#include "jobs/journal.h"
 #include "support/program.h"
 
 namespace exactff::validation {

@@ -1,7 +1,5 @@
 // A search for kinks that begins with a proof by silhouettes finds the kinks that a search by outlines finds.
 // EXACTFF_TEST_SCALE multiplies the number of random scenes.
-#include "gradient/kinks.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -10,6 +8,7 @@
 
 #include "exact/source_planes.h"
 #include "exactff/exact.h"
+#include "gradient/gradient.h"
 #include "support/random_meshes.h"
 #include "support/random_scenes.h"
 #include "support/solve.h"

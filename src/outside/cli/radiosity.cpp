@@ -20,7 +20,7 @@
 #include "radiosity/narrowing.h"
 #include "radiosity/on_faces.h"
 #include "scene/selections.h"
-#include "text/json_document.h"
+#include "text/escape.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "files/parallel.h"
-#include "kernel/float_environment.h"
 #include "matrix/columns.h"
 #include "text/phrases.h"
 #include "view_factors/pairs.h"
@@ -77,7 +76,6 @@ Hooks shifted(const AgainHooks& with, std::size_t entries) {
 void compute_again(const Scene& scene, const Again& again, const AgainHooks& with, Factors& factors,
                    const std::function<void(std::size_t)>& take) {
   if (again.entries.empty()) return;
-  const kernel::StandardArithmetic arithmetic;
   const std::size_t width = factors.to.size();
   const Part part(again, factors);
   const view_factors::Pairs pairs(scene, part.patches, part.patches, again.factors);

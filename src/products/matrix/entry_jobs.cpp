@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "kernel/float_environment.h"
 #include "text/text_lines.h"
 
 namespace exactff::matrix {
@@ -54,7 +53,6 @@ std::vector<std::size_t> EntryJobs::entries_of(std::size_t job) const {
 }
 
 void EntryJobs::compute(std::size_t job, const std::function<void(std::size_t, const ViewFactor&)>& take) const {
-  const kernel::StandardArithmetic arithmetic;
   const std::vector<std::size_t> entries = entries_of(job);
   if (job < pairs_.count()) {
     std::size_t next = 0;

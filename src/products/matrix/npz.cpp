@@ -54,6 +54,7 @@ void add_sums_of(files::NpzFile& file, const Matrix& matrix) {
 }  // namespace
 
 void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::path& path, const Balanced* balanced) {
+  const kernel::StandardArithmetic arithmetic;
   const Factors& all = matrix.factors;
   std::vector<double> values, factors, radii, area_from, area_to;
   std::vector<std::int64_t> columns, starts{0};

@@ -97,6 +97,7 @@ table::Fields<SolutionFile::Row> columns(bool variation) {
 
 table::Table table_of(const Scene& scene, const Solution& solution, const ViewFactorOptions& options,
                       const Origin& origin) {
+  const kernel::StandardArithmetic arithmetic;
   table::Head head;
   matrix::set_scene(head, scene);
   if (origin.divided) head.set("divided", *origin.divided);

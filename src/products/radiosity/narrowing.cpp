@@ -219,7 +219,6 @@ double accuracy_for(double width) { return std::min(0.5, 4.0 * width); }
 
 Narrowed narrow(const Scene& scene, matrix::Matrix& matrix, const Options& options, jobs::Journal* journal,
                 const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
   require_width(*options.width);
   Narrowed result{std::vector<std::uint8_t>(matrix.factors.entries.size()), 0};
   const double accuracy = options.factors.accuracy;
@@ -253,6 +252,7 @@ Solution solve_within(const Scene& scene, matrix::Matrix& matrix, const Options&
 }
 
 Widest widest_bounds(const Solution& solution) {
+  const kernel::StandardArithmetic arithmetic;
   Widest widest;
   for (std::size_t c = 0; c < solution.channels.size(); ++c) {
     const std::vector<BoundedValue>& all = solution.channels[c].radiosity;

@@ -12,7 +12,7 @@
 #include "matrix/row_facts.h"
 #include "radiosity/system.h"
 #include "table/rows.h"
-#include "text/csv_dialect.h"
+#include "text/csv_lines.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
@@ -302,6 +302,7 @@ class Conditions {
 }  // namespace
 
 ThermalConditions conditions_of(const Scene& scene, std::span<const Condition> all) {
+  const kernel::StandardArithmetic arithmetic;
   Conditions conditions(scene);
   std::vector<Problem> problems;
   for (const Condition& one : all) {
@@ -312,6 +313,7 @@ ThermalConditions conditions_of(const Scene& scene, std::span<const Condition> a
 }
 
 ThermalConditions read_conditions(const Scene& scene, const std::filesystem::path& file) {
+  const kernel::StandardArithmetic arithmetic;
   Conditions conditions(scene);
   text::CsvLines lines(file, "a CSV file with the columns patch, T, Q");
   text::CsvDialect dialect;
@@ -363,6 +365,7 @@ ThermalConditions read_conditions(const Scene& scene, const std::filesystem::pat
 // --- Files ---
 
 table::Table table_of(const Scene& scene, const Temperatures& found, const ViewFactorOptions& options) {
+  const kernel::StandardArithmetic arithmetic;
   using table::Strength;
   table::Head head;
   matrix::set_scene(head, scene);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "kernel/float_environment.h"
 #include "kernel/numbers.h"
 #include "kernel/poll.h"
 #include "kernel/vec.h"
@@ -385,6 +386,7 @@ class OverlapFinder {
 }  // namespace
 
 std::vector<Overlap> overlapping_fronts(const Scene& scene, std::span<const Selection> selections) {
+  const kernel::StandardArithmetic arithmetic;
   if (selections.size() < 2) return {};
   return OverlapFinder(scene, selections).find(selections);
 }

@@ -11,7 +11,6 @@
 
 #include "files/numpy.h"
 #include "files/parallel.h"
-#include "kernel/float_environment.h"
 #include "kernel/vec.h"
 #include "text/encoding.h"
 #include "text/escape.h"
@@ -120,7 +119,6 @@ void require_extension(const std::filesystem::path& file) { static_cast<void>(fo
 
 void write_faces(const Scene& scene, const std::vector<Field>& fields, std::vector<std::string> about,
                  const std::filesystem::path& file, const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
   const Format format = format_of(file);
   files::WholeFile cells(file);
   std::vector<std::size_t> face_of_cell;
@@ -138,7 +136,6 @@ void write_faces(const Scene& scene, const std::vector<Field>& fields, std::vect
 }
 
 void write(const Content& content, const std::filesystem::path& file, const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
   const Format format = format_of(file);
   files::WholeFile receivers(file), scene(scene_file(file));
   append(data_of(content), format, receivers, hooks);

@@ -180,7 +180,6 @@ void Plan::add_experiments(const std::vector<std::string>& names) {
 }
 
 std::vector<std::string> write(const StudyReport& report, const std::filesystem::path& folder, const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
   page::StagedFolder staged(folder);
   std::vector<std::string> messages;
   std::string without_gnuplot;  // why there are no figures, once that is known
@@ -213,7 +212,6 @@ std::vector<std::string> write(const StudyReport& report, const std::filesystem:
 }
 
 Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::Journal& journal, const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
   if (plan.scenes.empty() && plan.experiments.empty()) {
     text::refuse(
         plan.left_out.empty() ? "the report has no scene and no experiment" : "every scene of the study is left out",
@@ -259,6 +257,7 @@ Finished finished_report(const Plan& plan, const std::filesystem::path& folder) 
 namespace exactff::study {
 
 std::vector<std::string> write_report(const Study& study, const std::filesystem::path& folder, const Hooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
   report::StudyReport report;
   report.scenes.push_back({"", study.request.scene_name, study});
   report.command_line = study.request.command_line;

@@ -7,7 +7,6 @@
 
 #include "files/file.h"
 #include "files/parallel.h"
-#include "kernel/float_environment.h"
 #include "page/gnuplot.h"
 #include "page/output_folder.h"
 #include "page/page_text.h"
@@ -496,7 +495,6 @@ const std::array<StressTable, 3>& tables() {
 }
 
 std::vector<std::string> headlines(const Report& report) {
-  const kernel::StandardArithmetic arithmetic;
   std::vector<std::string> sentences = {exact_sentence(report)};
   for (Method method : kMethods) {
     if (method != Method::kExact) sentences.push_back(method_sentence(report, method));
@@ -519,7 +517,6 @@ std::filesystem::path part_of(const std::filesystem::path& folder) {
 }
 
 void write_part(const Report& report, const std::filesystem::path& folder) {
-  const kernel::StandardArithmetic arithmetic;
   page::StagedFolder staged(part_of(folder));
   page::DrawnFigures drawn;
   drawn.none = "There are no figures, because the run was interrupted.";
@@ -529,7 +526,6 @@ void write_part(const Report& report, const std::filesystem::path& folder) {
 }
 
 std::vector<std::string> write(const Report& report, const std::filesystem::path& folder, const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
   page::StagedFolder staged(folder);
   std::vector<std::string> messages;
   files::require_not_cancelled(hooks);

@@ -19,7 +19,6 @@
 #include "files/parallel.h"
 #include "files/stopwatch.h"
 #include "kernel/ball.h"
-#include "kernel/float_environment.h"
 #include "stress/families.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -220,7 +219,6 @@ bool next_is_refused(const FamilyResult& result, Method method, double reach) {
 }  // namespace
 
 Report run(Request request, const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
   if (request.threads <= 0) request.threads = files::usable_threads();
   Report report{std::move(request), {}, {}};
   struct ScenePlace {

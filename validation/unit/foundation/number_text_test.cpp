@@ -5,7 +5,7 @@
 #include "exactff/error.h"
 #include "kernel/numbers.h"
 #include "support/test.h"
-#include "text/csv_dialect.h"
+#include "text/csv_lines.h"
 
 namespace exactff {
 namespace {

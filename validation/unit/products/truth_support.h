@@ -5,7 +5,6 @@
 
 #include "exactff/scene_files.h"
 #include "exactff/truth.h"
-#include "jobs/blocks.h"
 #include "jobs/compute.h"
 #include "jobs/journal.h"
 #include "support/test.h"

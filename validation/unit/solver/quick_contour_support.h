@@ -3,10 +3,10 @@
 #pragma once
 
 #include "contour/contour.h"
-#include "contour/quick_arithmetic.h"
 #include "contour/quick_contour.h"
 #include "exactff/enclosure.h"
 #include "generate/random.h"
+#include "kernel/bounded_vectors.h"
 #include "support/test.h"
 
 namespace exactff::contour {
