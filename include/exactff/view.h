@@ -22,6 +22,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -95,6 +96,21 @@ struct ViewOptions {
   int precision_cap = 65536;  // the same
 };
 
+// The memory of view(), which serves for single sources as well.
+class ViewWorkspace : public Workspace {
+ public:
+  ViewWorkspace();
+  ViewWorkspace(ViewWorkspace&&) noexcept;
+  ViewWorkspace& operator=(ViewWorkspace&&) noexcept;
+  ~ViewWorkspace();
+
+ private:
+  friend struct ViewWorkspaceInside;  // see scene.h
+  struct Memory;
+  [[nodiscard]] Memory& memory();
+  std::unique_ptr<Memory> memory_;
+};
+
 // The view of the receiver. Requires its faces to be of this scene (else std::invalid_argument), and finite
 // coordinates, a normal other than zero and a precision cap of at least one bit (else InputError). Threads may call it
 // concurrently, each with a workspace of its own. The result depends on the arguments alone.
@@ -103,7 +119,7 @@ struct ViewOptions {
 // allocated, except for stacked patches, values that need more than double-double precision, and listed arcs. After an
 // exception the content of `result` is unspecified.
 void view(const Scene& scene, const Receiver& receiver, const ViewOptions& options, WholeView& result,
-          Workspace& workspace);
+          ViewWorkspace& workspace);
 
 // ---------------------------------------------------------------------------------------------------------- pictures
 

@@ -78,7 +78,7 @@ void loop(benchmark::State& state, const ViewScene& s) {
 }
 
 void sweep(benchmark::State& state, const ViewScene& s) {
-  Workspace workspace;
+  ViewWorkspace workspace;
   WholeView result;
   for (auto _ : state) {
     view(s.scene, s.receiver, {.faces = true}, result, workspace);

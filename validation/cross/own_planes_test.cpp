@@ -8,7 +8,7 @@
 #include "support/oracle_check.h"
 #include "support/solve.h"
 #include "support/test.h"
-#include "whole_view/referee.h"
+#include "whole_view/light.h"
 
 namespace exactff::validation {
 namespace {

@@ -1,8 +1,7 @@
 // A search for kinks that begins with a proof by silhouettes finds the kinks that a search by outlines finds.
 // EXACTFF_TEST_SCALE multiplies the number of random scenes.
-#include "gradient/kinks.h"
-
 #include "exact/source_planes.h"
+#include "gradient/gradient.h"
 #include "support/random_meshes.h"
 #include "support/solve.h"
 #include "support/test.h"

@@ -35,9 +35,8 @@ File::File(fs::path path, Mode mode, FailureAdvice advice, fs::path called)
     return;
   }
   if (mode == Mode::kReadWrite) fail(errno);
-  throw InputError({.file = path_.string(),
-                    .what = std::string("cannot be read: ") + std::strerror(errno),
-                    .suggestion = "check the name and the file's permissions"});
+  text::refuse(path_, std::string("cannot be read: ") + std::strerror(errno), {},
+               "check the name and the file's permissions");
 }
 
 // A pipe has no offsets, and a device may never end.
@@ -45,10 +44,8 @@ void File::require_regular() {
   struct stat status {};
   if (::fstat(descriptor_, &status) != 0 || S_ISREG(status.st_mode)) return;
   ::close(std::exchange(descriptor_, -1));
-  throw InputError({.file = path_.string(),
-                    .what = "is not a regular file",
-                    .why = "exactff reads and writes it at arbitrary positions",
-                    .suggestion = "name a file on a disk"});
+  text::refuse(path_, "is not a regular file", "exactff reads and writes it at arbitrary positions",
+               "name a file on a disk");
 }
 
 File::File(File&& other) noexcept
@@ -62,10 +59,7 @@ File::~File() {
 }
 
 void File::fail(int error) const {
-  throw InputError({.file = called_.string(),
-                    .what = std::string("cannot be written: ") + std::strerror(error),
-                    .why = advice_.why,
-                    .suggestion = advice_.suggestion});
+  text::refuse(called_, std::string("cannot be written: ") + std::strerror(error), advice_.why, advice_.suggestion);
 }
 
 std::uint64_t File::size() const {
@@ -80,10 +74,8 @@ std::string File::read(std::uint64_t offset, std::size_t count) const {
     const ssize_t got = ::pread(descriptor_, bytes.data() + have, count - have, static_cast<off_t>(offset + have));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) {
-      throw InputError({.file = path_.string(),
-                        .what = std::string("cannot be read: ") + std::strerror(errno),
-                        .why = "the disk or the network may be failing",
-                        .suggestion = "check them and try again"});
+      text::refuse(path_, std::string("cannot be read: ") + std::strerror(errno),
+                   "the disk or the network may be failing", "check them and try again");
     }
     if (got == 0) break;
     have += static_cast<std::size_t>(got);
@@ -168,9 +160,8 @@ void write_file(const fs::path& file, const std::function<void(std::ostream&)>& 
   put(out);
   out.close();
   if (out) return;
-  throw InputError(Problem{file.string(), 0, "cannot be written",
-                           "the disk may be full or read-only; no incomplete file was left",
-                           "free some space, or name a folder on another disk"});
+  text::refuse(file, "cannot be written", "the disk may be full or read-only; no incomplete file was left",
+               "free some space, or name a folder on another disk");
 }
 
 namespace {

@@ -65,7 +65,13 @@ std::size_t npy_count(const std::filesystem::path& path, std::span<const std::si
 
 namespace {
 
-// The header is a Python dictionary: {'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }
+// What follows a key in the header, a Python dictionary: {'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }.
+// Empty if there is no such key.
+std::string_view value_of(std::string_view header, std::string_view key) {
+  const std::size_t at = header.find("'" + std::string(key) + "':");
+  return at == std::string_view::npos ? std::string_view() : text::trimmed(header.substr(at + key.size() + 3));
+}
+
 class NpyReader {
  public:
   explicit NpyReader(const std::filesystem::path& path)
@@ -74,8 +80,8 @@ class NpyReader {
   NpyArray read() {
     if (!is_npy(rest_)) damaged("is no NumPy file");
     const std::string_view header = take_header();
-    const std::string_view type = value_of(header, "descr");
-    NpyArray array{shape_of(value_of(header, "shape")), {}};
+    const std::string_view type = needed(header, "descr");
+    NpyArray array{shape_of(needed(header, "shape")), {}};
     const std::size_t count = npy_count(path_, array.shape);
     if (type.find("f8") != std::string_view::npos) {
       read_elements<double, std::uint64_t>(type, count, array.values);
@@ -85,7 +91,7 @@ class NpyReader {
       text::refuse(path_, "holds elements of the type " + text::in_quotes(type), "float64 and float32 are read",
                    "save array.astype(float)");
     }
-    if (value_of(header, "fortran_order").starts_with("True")) transpose(array);
+    if (needed(header, "fortran_order").starts_with("True")) transpose(array);
     return array;
   }
 
@@ -108,10 +114,10 @@ class NpyReader {
     return header;
   }
 
-  std::string_view value_of(std::string_view header, const std::string& key) const {
-    const std::size_t at = header.find("'" + key + "':");
-    if (at == std::string_view::npos) damaged("has no '" + key + "' in its header");
-    return text::trimmed(header.substr(at + key.size() + 3).substr(0, 80));
+  std::string_view needed(std::string_view header, const std::string& key) const {
+    const std::string_view value = value_of(header, key);
+    if (value.empty()) damaged("has no '" + key + "' in its header");
+    return value.substr(0, 80);
   }
 
   std::vector<std::size_t> shape_of(std::string_view text) const {
@@ -279,12 +285,6 @@ T number_in(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-// The value after "'KEY': " in the header of an array.
-std::string_view text_after(std::string_view header, std::string_view key) {
-  const std::size_t at = header.find(key);
-  return at == std::string_view::npos ? std::string_view() : header.substr(at + key.size());
-}
-
 }  // namespace
 
 NpzReader::NpzReader(const std::filesystem::path& path)
@@ -318,7 +318,7 @@ const NpzReader::Array* NpzReader::find(std::string_view name) const {
 const NpzReader::Array& NpzReader::array(std::string_view name, std::string_view type) const {
   const Array* const found = find(name);
   if (found == nullptr) damaged("has no array " + text::in_quotes(name));
-  if (!text_after(found->header, "'descr': '").starts_with(type)) {
+  if (!value_of(found->header, "descr").starts_with('\'' + std::string(type))) {
     damaged("has other elements than " + text::in_quotes(type) + " in its array " + text::in_quotes(name));
   }
   return *found;
@@ -326,7 +326,7 @@ const NpzReader::Array& NpzReader::array(std::string_view name, std::string_view
 
 std::vector<std::string> NpzReader::texts(std::string_view name) const {
   const Array& found = array(name, "<U");
-  const std::string_view width_text = text_after(found.header, "'descr': '<U");
+  const std::string_view width_text = value_of(found.header, "descr").substr(3);
   std::size_t width = 0;
   std::from_chars(width_text.data(), width_text.data() + width_text.size(), width);
   if (width == 0 || found.elements.size() % (4 * width) != 0) damaged("has a damaged array " + text::in_quotes(name));

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -46,19 +47,13 @@ void read_little_endian(std::string_view bytes, std::span<T> values) {
 
 // NumPy's name of the element type.
 template <class T>
-inline constexpr std::string_view kNpyType = {};
-template <>
-inline constexpr std::string_view kNpyType<double> = "<f8";
-template <>
-inline constexpr std::string_view kNpyType<float> = "<f4";
-template <>
-inline constexpr std::string_view kNpyType<std::int32_t> = "<i4";
-template <>
-inline constexpr std::string_view kNpyType<std::int64_t> = "<i8";
-template <>
-inline constexpr std::string_view kNpyType<std::uint64_t> = "<u8";
-template <>
-inline constexpr std::string_view kNpyType<std::uint8_t> = "|u1";
+inline constexpr std::string_view kNpyType = std::same_as<T, double>          ? "<f8"
+                                             : std::same_as<T, float>         ? "<f4"
+                                             : std::same_as<T, std::int32_t>  ? "<i4"
+                                             : std::same_as<T, std::int64_t>  ? "<i8"
+                                             : std::same_as<T, std::uint64_t> ? "<u8"
+                                             : std::same_as<T, std::uint8_t>  ? "|u1"
+                                                                              : "";
 
 // The bytes before the elements. No shape is one number; an extent of 0 is an array without elements. Throws InputError
 // for more than 65,535 bytes, which is some thousand axes.

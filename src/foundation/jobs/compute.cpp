@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
 #include "files/file.h"
-#include "jobs/shards.h"
 #include "kernel/expect.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -299,11 +299,10 @@ bool is_complete(const fs::path& file, Existing existing) {
 }
 
 [[noreturn]] void refuse_damaged(const fs::path& file, const Rows& rows, std::uint64_t found, std::uint64_t all) {
-  throw InputError({.file = file.string(),
-                    .what = "is damaged: " + std::to_string(found) + " of " +
-                            text::counted(all, rows.plan().kind.row, rows.plan().kind.rows) + " can be read",
-                    .why = "a complete file has all of them",
-                    .suggestion = "compute it again with --force"});
+  text::refuse(file,
+               "is damaged: " + std::to_string(found) + " of " +
+                   text::counted(all, rows.plan().kind.row, rows.plan().kind.rows) + " can be read",
+               "a complete file has all of them", "compute it again with --force");
 }
 
 void read_shard(const File& file, const Rows& rows, std::uint64_t head_bytes, const See& see) {
@@ -342,6 +341,121 @@ void read_complete(const fs::path& path, const Rows& rows, const See& see) {
   }
 }
 
+// --- Shards ---
+
+// Every shard holds its chunks in order, so reading all shards in parallel gives the rows in order.
+
+using text::refuse;
+
+struct ShardFile {
+  File file;
+  ShardHead head;
+  std::vector<Block> blocks;
+};
+
+void read_chunks(ShardFile& shard, std::uint64_t head_bytes) {
+  const Plan& plan = shard.head.plan;
+  Blocks found = find_blocks(shard.file, head_bytes, kRowsWord);
+  bool whole = found.damaged == 0 && found.end == shard.file.size() && found.list.size() == plan.shard_chunks();
+  for (std::size_t i = 0; whole && i < found.list.size(); ++i)
+    whole = range_of(found.list[i]) == plan.chunk_of_shard(i);
+  if (!whole) {
+    refuse(shard.file.path(),
+           "is damaged: " + std::to_string(found.list.size()) + " of its " +
+               text::counted(plan.shard_chunks(), "chunk") + " of " + plan.kind.rows + " are intact",
+           "every " + plan.kind.row + " is needed", "delete it and compute this shard again");
+  }
+  shard.blocks = std::move(found.list);
+}
+
+ShardFile read_shard_file(const fs::path& path) {
+  File file(path, File::Mode::kRead);
+  const std::string text = read_head(file).value_or("");
+  std::optional<ShardHead> head = parse_shard_head(text);
+  if (!head) {
+    refuse(path, "is not a shard of a table", "shards are written with --shard 1/4 and so on, by this version",
+           "name only those files");
+  }
+  const std::string& command = head->plan.kind.command;
+  if (head->unfinished) {
+    refuse(path, "is the journal of an unfinished run", "rows are missing",
+           "complete it with the same exactff " + command + " command and --resume");
+  }
+  if (head->plan.shard.count < 2) refuse(path, "is no shard", "it has no part of the rows", "name the shards");
+  ShardFile shard{std::move(file), std::move(*head), {}};
+  read_chunks(shard, text.size());
+  return shard;
+}
+
+// By shard number.
+using ShardFiles = std::map<std::uint64_t, ShardFile>;
+
+void add(ShardFiles& shards, ShardFile shard) {
+  const Plan plan = shard.head.plan;
+  if (!shards.empty()) {
+    const ShardFile& first = shards.begin()->second;
+    const Plan& other = first.head.plan;
+    if (plan.shard.count != other.shard.count || plan.chunk != other.chunk) {
+      refuse(shard.file.path(), "is one of " + text::counted(plan.shard.count, "shard"),
+             first.file.path().string() + " is one of " + std::to_string(other.shard.count),
+             "name shards of the same request");
+    }
+    require_same_head(shard.file.path(), shard.head.table, first.head.table, first.file.path().string() + " has",
+                      "name shards of the same request");
+  }
+  const auto [place, is_new] = shards.try_emplace(plan.shard.number, std::move(shard));
+  if (is_new) return;
+  refuse(shard.file.path(),
+         "is shard " + std::to_string(place->first) + ", and so is " + place->second.file.path().string(),
+         "its " + plan.kind.rows + " would occur twice", "give each shard once");
+}
+
+ShardFiles read_all(const std::vector<fs::path>& paths, Pace& pace) {
+  std::vector<Problem> problems;
+  ShardFiles shards;
+  for (const fs::path& path : paths) {
+    pace.add(1);
+    try {
+      add(shards, read_shard_file(path));
+    } catch (const InputError& error) {
+      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+    }
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return shards;
+}
+
+void require_all(const ShardFiles& shards) {
+  if (shards.empty()) refuse("no shard is named", "there is nothing to merge", "name the files of the shards");
+  const Plan& plan = shards.begin()->second.head.plan;
+  if (shards.size() == plan.shard.count) return;
+  constexpr std::size_t kMostNamed = 20;
+  std::vector<std::string> missing;
+  for (std::uint64_t number = 1; number <= plan.shard.count && missing.size() <= kMostNamed; ++number) {
+    if (!shards.contains(number)) missing.push_back(std::to_string(number));
+  }
+  if (missing.size() > kMostNamed) missing.back() = "more";
+  refuse("of " + text::counted(plan.shard.count, "shard") + " these are missing: " + text::enumerate(missing),
+         "every " + plan.kind.row + " is needed", "add these files");
+}
+
+// Calls take(text) for every chunk, in order; it returns false if the text cannot be that of rows: the file changed in
+// the meantime.
+template <class Take>
+void take_chunks(const ShardFiles& shards, const RowHooks& hooks, const Take& take) {
+  const Plan& plan = shards.begin()->second.head.plan;
+  Pace pace("writing the file", plan.count, hooks);
+  for (std::uint64_t chunk = 0; chunk < plan.chunks(); ++chunk) {
+    const ShardFile& shard = shards.at(chunk % plan.shard.count + 1);
+    const Block& block = shard.blocks[chunk / plan.shard.count];
+    if (!take(read_bytes(shard.file, block))) {
+      refuse(shard.file.path(), "changed while it was being read", "every " + plan.kind.row + " is needed",
+             "try again");
+    }
+    pace.add(range_of(block).rows);
+  }
+}
+
 }  // namespace
 
 Summary write(const Rows& rows, const fs::path& file, Existing existing, const RowHooks& hooks, Team* team,
@@ -365,15 +479,18 @@ Summary merge(const std::vector<fs::path>& paths, const fs::path& file, Existing
               const See& see) {
   files::require_not_read(file, paths);
   require_free(file, existing == Existing::kReplace ? existing : Existing::kRefuse);
-  const MergedShards shards = read_shards(paths, hooks);
-  TableFile table(file, shards.head, shards.numbered, see);
-  shards.for_each_chunk([&](Range, const std::string& text) { return table.add(text); });
+  Pace reading("reading shards", paths.size(), hooks);
+  const ShardFiles shards = read_all(paths, reading);
+  require_all(shards);
+  const ShardHead& first = shards.begin()->second.head;
+  TableFile table(file, first.table, first.numbered, see);
+  take_chunks(shards, hooks, [&](const std::string& text) { return table.add(text); });
   if (!table.commit()) {
-    text::refuse(paths.front(), "and the other shards do not hold each line of the table once", "every line is needed",
-                 "compute them again");
+    refuse(paths.front(), "and the other shards do not hold each line of the table once", "every line is needed",
+           "compute them again");
   }
   Summary summary;
-  summary.rows = shards.rows;
+  summary.rows = first.plan.count;
   return summary;
 }
 

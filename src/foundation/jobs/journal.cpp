@@ -8,11 +8,113 @@
 #include "exactff/error.h"
 #include "exactff/version.h"
 #include "files/file.h"
+#include "text/hashes.h"
+#include "text/number_text.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff::jobs {
 
 namespace fs = std::filesystem;
+
+// --- Blocks ---
+
+namespace {
+
+constexpr std::string_view kBeforeCrc = " bytes, crc ";
+constexpr std::size_t kLongestLine = 512;
+constexpr std::size_t kReadBytes = 1 << 20;
+
+std::string opening_of(std::string_view word) { return "# " + std::string(word) + ' '; }
+
+// The block whose comment line is at `offset`; nothing if the block is damaged. The name may hold any text, so the line
+// is read from its end.
+std::optional<Block> block_at(const File& file, std::uint64_t offset, std::string_view opening) {
+  const std::string text = file.read(offset, kLongestLine);
+  const std::size_t end = text.find('\n');
+  const std::string_view line = std::string_view(text).substr(0, end);
+  const std::size_t crc = line.rfind(kBeforeCrc), comma = line.rfind(", ", crc == 0 ? 0 : crc - 1);
+  if (end == std::string::npos || crc == std::string_view::npos || comma == std::string_view::npos) return std::nullopt;
+  if (!line.starts_with(opening) || comma < opening.size()) return std::nullopt;
+  Block block{std::string(line.substr(opening.size(), comma - opening.size())), offset + end + 1};
+  const auto bytes = text::whole_number<std::uint64_t>(line.substr(comma + 2, crc - comma - 2));
+  if (!bytes || *bytes > file.size() - block.offset) return std::nullopt;
+  block.bytes = *bytes;
+  const std::size_t digits = crc + kBeforeCrc.size();
+  if (line.substr(digits) != text::crc32_digits(line.substr(0, digits), read_bytes(file, block))) return std::nullopt;
+  return block;
+}
+
+// Where the next comment line of a block may begin, after `offset`. Does not require a line break before it: that may
+// be damaged, too.
+std::optional<std::uint64_t> next_opening(const File& file, std::uint64_t offset, std::string_view opening) {
+  for (++offset;;) {
+    const std::string bytes = file.read(offset, kReadBytes);
+    if (const std::size_t found = bytes.find(opening); found != std::string::npos) return offset + found;
+    if (bytes.size() < kReadBytes) return std::nullopt;
+    offset += bytes.size() - opening.size();  // the text may lie across two reads
+  }
+}
+
+}  // namespace
+
+std::optional<std::string> read_head(const File& file) {
+  std::string text;
+  for (std::size_t line = 0;;) {
+    const std::string more = file.read(text.size(), kReadBytes);
+    text += more;
+    for (std::size_t end = text.find('\n', line); end != std::string::npos; end = text.find('\n', line)) {
+      if (text[line] != '#') return text.substr(0, end + 1);
+      line = end + 1;
+    }
+    if (more.empty()) return std::nullopt;
+  }
+}
+
+std::string block_text(std::string_view word, std::string_view name, std::string_view bytes) {
+  std::string text = opening_of(word);
+  text.append(name).append(", ").append(std::to_string(bytes.size())).append(kBeforeCrc);
+  text += text::crc32_digits(text, bytes) + '\n';
+  text += bytes;
+  return text;
+}
+
+Blocks find_blocks(const File& file, std::uint64_t head_bytes, std::string_view word) {
+  const std::string opening = opening_of(word);
+  Blocks blocks;
+  blocks.end = head_bytes;
+  std::optional<std::uint64_t> offset = head_bytes;
+  while (offset && *offset < file.size()) {
+    if (std::optional<Block> block = block_at(file, *offset, opening)) {
+      blocks.damaged += *offset - blocks.end;
+      blocks.end = block->offset + block->bytes;
+      offset = blocks.end;
+      blocks.list.push_back(std::move(*block));
+    } else {
+      offset = next_opening(file, *offset, opening);
+    }
+  }
+  return blocks;
+}
+
+std::string read_bytes(const File& file, const Block& block) {
+  return file.read(block.offset, static_cast<std::size_t>(block.bytes));
+}
+
+std::string name_of(Range range) { return std::to_string(range.first) + '+' + std::to_string(range.rows); }
+
+Range range_of(const Block& block) {
+  const std::string_view name = block.name;
+  const std::size_t plus = name.find('+');
+  if (plus == std::string_view::npos) return {};
+  const auto first = text::whole_number<std::uint64_t>(name.substr(0, plus));
+  const auto rows = text::whole_number<std::uint32_t>(name.substr(plus + 1));
+  return first && rows ? Range{*first, *rows} : Range{};
+}
+
+std::string block_text(Range range, std::string_view lines) { return block_text(kRowsWord, name_of(range), lines); }
+
+// --- Names of journals ---
 
 fs::path journal_of(const fs::path& file) {
   fs::path journal = file;
@@ -31,18 +133,15 @@ void require_free(const fs::path& file, Existing existing) {
   std::error_code ignored;
   const bool folder = fs::is_directory(file, ignored), device = fs::is_other(file, ignored);
   if (folder || device || !file.has_filename()) {
-    throw InputError({.file = file.string(),
-                      .what = folder   ? "is a folder"
-                              : device ? "is a device"
-                                       : "is not the name of a file",
-                      .why = "finished rows are kept in a file, so that an interrupted run can continue",
-                      .suggestion = "name a file, for example -o truth.csv"});
+    text::refuse(file,
+                 folder   ? "is a folder"
+                 : device ? "is a device"
+                          : "is not the name of a file",
+                 "finished rows are kept in a file, so that an interrupted run can continue",
+                 "name a file, for example -o truth.csv");
   }
   if (existing == Existing::kRefuse && fs::exists(file, ignored)) {
-    throw InputError({.file = file.string(),
-                      .what = "already exists",
-                      .why = "it may hold hours of work",
-                      .suggestion = "name another file, or replace it with --force"});
+    text::refuse(file, "already exists", "it may hold hours of work", "name another file, or replace it with --force");
   }
 }
 
@@ -83,10 +182,8 @@ void JournalFile::take_over(Existing existing, const std::function<void(const st
   Blocks there = find_blocks(file_, form_.head.size(), form_.word);
   if (there.list.empty()) return begin();
   if (existing == Existing::kRefuse) {
-    throw InputError({.file = path().string(),
-                      .what = "contains the finished work of an interrupted run",
-                      .why = "it may be hours of work",
-                      .suggestion = "continue with --resume, or start again with --force"});
+    text::refuse(path(), "contains the finished work of an interrupted run", "it may be hours of work",
+                 "continue with --resume, or start again with --force");
   }
   const std::uint64_t lost = there.damaged + file_.size() - there.end;
   if (lost > 0) {
@@ -104,17 +201,13 @@ void JournalFile::take_over(Existing existing, const std::function<void(const st
 void JournalFile::require_same(std::string_view beginning, Existing existing) const {
   const std::string_view first = line_at(beginning, 0);
   if (first.find("exactff") == std::string_view::npos) {
-    throw InputError({.file = path().string(),
-                      .what = "already exists, and exactff did not write it",
-                      .why = "finished work must be kept in a file with this name",
-                      .suggestion = "move it away, or give another name with -o"});
+    text::refuse(path(), "already exists, and exactff did not write it",
+                 "finished work must be kept in a file with this name", "move it away, or give another name with -o");
   }
   if (existing == Existing::kReplace || beginning == form_.head) return;
   if (!first.starts_with('#') || first.find(kVersion) == std::string_view::npos) {
-    throw InputError({.file = path().string(),
-                      .what = "was written by another version of exactff",
-                      .why = "its values may differ",
-                      .suggestion = "continue with that version, or start again with --force"});
+    text::refuse(path(), "was written by another version of exactff", "its values may differ",
+                 "continue with that version, or start again with --force");
   }
   require_same_head(path(), read_head(file_).value_or(file_.read(0, 4096)), form_.head);
 }

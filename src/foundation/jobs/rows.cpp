@@ -165,12 +165,9 @@ void require_same_head(const std::filesystem::path& file, std::string_view head,
   const auto theirs = table::parse_csv_head(head), ours = table::parse_csv_head(other);
   const auto differ = theirs && ours ? first_difference(*theirs, *ours)
                                      : std::pair<std::string, std::string>("no head of this version", "one");
-  throw InputError(
-      {.file = file.string(),
-       .line = 1,
-       .what = "belongs to a different request: it has " + differ.first + ", and " + whose + ' ' + differ.second,
-       .why = "rows of different requests must not be mixed",
-       .suggestion = suggestion});
+  text::refuse(file, 1,
+               "belongs to a different request: it has " + differ.first + ", and " + whose + ' ' + differ.second,
+               "rows of different requests must not be mixed", suggestion);
 }
 
 }  // namespace exactff::jobs

@@ -2,17 +2,16 @@
 
 #include <algorithm>
 #include <condition_variable>
-#include <cstring>
 #include <deque>
 #include <mutex>
 #include <new>
 #include <stdexcept>
 #include <thread>
-#include <type_traits>
 #include <utility>
 
 #include "files/parallel.h"
 #include "jobs/compute.h"
+#include "jobs/kept_work.h"
 
 namespace exactff::jobs {
 namespace {
@@ -20,88 +19,80 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using files::WorkerPool;
 
-enum class Word : char { kHello, kAsk, kRows, kTrouble, kCeased, kBye, kWork, kCease, kDismiss };
+enum class Word { kHello, kAsk, kRows, kTrouble, kCeased, kBye, kWork, kCease, kDismiss };
+constexpr std::uint64_t kWords = 9;
 
 constexpr auto kPause = std::chrono::milliseconds(1);        // between checks for messages
 constexpr auto kWhileIdle = std::chrono::milliseconds(100);  // between checks whether to end
 constexpr double kWorkAhead = 0.02;                          // seconds that the rows waiting at a follower should last
 constexpr std::uint64_t kMostPieces = 64;                    // the limit of waiting pieces for each thread
 
-// A message is a word followed by its data.
-class Writer {
- public:
-  explicit Writer(Word word) : text_(1, static_cast<char>(word)) {}
-  template <class Plain>
-  requires std::is_trivially_copyable_v<Plain> Writer& operator<<(const Plain& value) {
-    text_.append(reinterpret_cast<const char*>(&value), sizeof value);
-    return *this;
-  }
-  Writer& operator<<(const std::string& text) {
-    *this << std::uint64_t{text.size()};
-    text_ += text;
-    return *this;
-  }
-  [[nodiscard]] std::string text() && { return std::move(text_); }
-
- private:
-  std::string text_;
-};
+// A message is its word and then its data, written as results in journals are (kept_work.h).
+template <class... Field>
+std::string message_of(Word word, Field... fields) {
+  WordWriter words;
+  words.choice(word, kWords);
+  words(fields...);
+  return words.bytes();
+}
 
 class Reader {
  public:
-  explicit Reader(const std::string& text) : text_(text) {}
-  [[nodiscard]] Word word() const { return static_cast<Word>(text_.at(0)); }
-  template <class Plain>
-  Plain read() {
-    Plain value{};
-    std::memcpy(&value, take(sizeof value), sizeof value);
-    return value;
+  explicit Reader(std::string_view text) : words_(text) { words_.choice(word_, kWords); }
+  [[nodiscard]] Word word() const { return word_; }
+  template <class... Field>
+  void operator()(Field&... fields) {
+    words_(fields...);
+    require_sound();
   }
-  std::string read_text() {
-    const auto size = static_cast<std::size_t>(read<std::uint64_t>());
-    return {take(size), size};
-  }
-  [[nodiscard]] bool at_end() const { return at_ == text_.size(); }
+  void read(Finished& finished);
 
  private:
-  const char* take(std::size_t count) {
-    if (count > text_.size() - at_) throw std::logic_error("a message between processes is cut off");
-    at_ += count;
-    return text_.data() + at_ - count;
+  void require_sound() const {
+    if (words_.torn()) throw std::logic_error("a message between processes is cut off");
   }
-  const std::string& text_;
-  std::size_t at_ = 1;
+  WordReader words_;
+  Word word_{};
 };
 
-std::string to_text(const Finished& finished) {
-  Writer message(Word::kRows);
-  message << finished.range.first << finished.range.rows << std::uint64_t{finished.slow.size()};
-  for (const SlowRow& slow : finished.slow) message << slow.row << slow.seconds;
-  message << finished.lines;
-  return std::move(message).text();
+template <class Words>
+void fields(Words& words, Finished& finished) {
+  std::uint64_t rows = finished.range.rows;
+  words(finished.range.first, rows, finished.lines);
+  finished.range.rows = static_cast<std::uint32_t>(rows);
+  words.list(finished.slow, [&](SlowRow& slow) { words(slow.row, slow.seconds); });
 }
 
-Finished to_finished(Reader message) {
+void Reader::read(Finished& finished) {
+  fields(words_, finished);
+  require_sound();
+}
+
+std::string to_text(Finished finished) {
+  WordWriter words;
+  Word word = Word::kRows;
+  words.choice(word, kWords);
+  fields(words, finished);
+  return words.bytes();
+}
+
+Finished to_finished(Reader& message) {
   Finished finished;
-  finished.range.first = message.read<std::uint64_t>();
-  finished.range.rows = message.read<std::uint32_t>();
-  for (auto count = message.read<std::uint64_t>(); count > 0; --count) {
-    const auto row = message.read<std::uint64_t>();
-    finished.slow.push_back({row, message.read<double>()});
-  }
-  finished.lines = message.read_text();
+  message.read(finished);
   return finished;
 }
 
-enum class Blame : char { kInput, kSignal, kMemory, kProgram };
+enum class Blame : std::uint64_t { kInput, kSignal, kMemory, kProgram };
 
 std::string trouble(Blame blame, const std::string& place, const std::string& what) {
-  return std::move(Writer(Word::kTrouble) << blame << place << what).text();
+  return message_of(Word::kTrouble, static_cast<std::uint64_t>(blame), place, what);
 }
 
 [[noreturn]] void rethrow(int rank, Reader message) {
-  const auto blame = message.read<Blame>();
-  const std::string place = message.read_text(), what = message.read_text();
+  std::uint64_t kind = 0;
+  std::string place, what;
+  message(kind, place, what);
+  const auto blame = static_cast<Blame>(kind);
   if (blame == Blame::kSignal) throw Cancelled();
   if (blame == Blame::kMemory) throw std::bad_alloc();
   const std::string where = "on rank " + std::to_string(rank) + " (" + place + "): ";
@@ -128,8 +119,9 @@ void Leader::answer(const Message& message, const TakeRange& take, const Deliver
   Reader reader(message.text);
   switch (reader.word()) {
     case Word::kHello: {
-      const std::string place = reader.read_text();
-      if (reader.read_text() != head_) {
+      std::string place, head;
+      reader(place, head);
+      if (head != head_) {
         rethrow(message.rank, Reader(trouble(Blame::kInput, place,
                                              "the program, the scene or the receivers differ from those of rank 0 (" +
                                                  team_.place() + "); every process needs the same files")));
@@ -137,8 +129,11 @@ void Leader::answer(const Message& message, const TakeRange& take, const Deliver
       ++here_;
       return;
     }
-    case Word::kAsk:
-      return give_work(message.rank, reader.read<std::uint64_t>(), take);
+    case Word::kAsk: {
+      std::uint64_t pieces = 0;
+      reader(pieces);
+      return give_work(message.rank, pieces, take);
+    }
     case Word::kRows:
       return deliver(to_finished(reader));
     case Word::kTrouble:
@@ -149,24 +144,24 @@ void Leader::answer(const Message& message, const TakeRange& take, const Deliver
 }
 
 void Leader::give_work(int rank, std::uint64_t pieces, const TakeRange& take) {
-  Writer work(Word::kWork);
+  std::vector<std::uint64_t> ranges;
   for (; pieces > 0; --pieces) {
     const std::optional<Range> range = take();
     if (!range) break;
-    work << range->first << range->rows;
+    ranges.insert(ranges.end(), {range->first, range->rows});
   }
-  team_.send(rank, std::move(work).text());
+  team_.send(rank, message_of(Word::kWork, ranges));
 }
 
 void Leader::cease(const DeliverRows& deliver) {
-  for (int rank = 1; rank < team_.size(); ++rank) team_.send(rank, std::move(Writer(Word::kCease)).text());
+  for (int rank = 1; rank < team_.size(); ++rank) team_.send(rank, message_of(Word::kCease));
   for (int left = team_.size() - 1; left > 0;) {
     const std::optional<Message> message = team_.receive();
     if (!message) {
       std::this_thread::sleep_for(kPause);
       continue;
     }
-    const Reader reader(message->text);
+    Reader reader(message->text);
     if (reader.word() == Word::kCeased) --left;
     if (reader.word() == Word::kRows) deliver(to_finished(reader));
   }
@@ -174,7 +169,7 @@ void Leader::cease(const DeliverRows& deliver) {
 
 void dismiss(Team& team, int exit_code) {
   for (int rank = 1; rank < team.size(); ++rank) {
-    team.send(rank, std::move(Writer(Word::kDismiss) << exit_code).text());
+    team.send(rank, message_of(Word::kDismiss, static_cast<std::uint64_t>(exit_code)));
   }
   for (int left = team.size() - 1; left > 0;) {
     const std::optional<Message> message = team.receive();
@@ -253,7 +248,7 @@ class Follower {
   int run(const std::function<std::unique_ptr<Rows>()>& make_rows) {
     try {
       const std::unique_ptr<Rows> rows = make_rows();
-      say(Writer(Word::kHello) << team_.place() << rows->head());
+      team_.send(0, message_of(Word::kHello, team_.place(), rows->head()));
       work(*rows);
     } catch (const InputError& error) {
       team_.send(0, trouble(Blame::kInput, team_.place(), error.what()));
@@ -268,8 +263,6 @@ class Follower {
   }
 
  private:
-  void say(Writer& message) { team_.send(0, std::move(message).text()); }
-
   void work(const Rows& rows) {
     threads_ = static_cast<std::uint64_t>(rows.plan().threads);
     Desk desk;
@@ -297,11 +290,12 @@ class Follower {
     while (const std::optional<Message> message = team_.receive()) {
       Reader reader(message->text);
       if (reader.word() == Word::kWork) {
+        std::vector<std::uint64_t> ranges;
+        reader(ranges);
         asked_ = false;
-        no_more_ = reader.at_end();
-        while (!reader.at_end()) {
-          const auto first = reader.read<std::uint64_t>();
-          desk.put({first, reader.read<std::uint32_t>()});
+        no_more_ = ranges.empty();
+        for (std::size_t i = 0; i + 1 < ranges.size(); i += 2) {
+          desk.put({ranges[i], static_cast<std::uint32_t>(ranges[i + 1])});
         }
       } else {
         obey(reader);
@@ -312,7 +306,10 @@ class Follower {
   void obey(Reader reader) {
     told_to_stop_ = true;
     if (reader.word() == Word::kCease) must_say_ceased_ = true;
-    if (reader.word() == Word::kDismiss) exit_code_ = reader.read<int>();
+    if (reader.word() != Word::kDismiss) return;
+    std::uint64_t code = 0;
+    reader(code);
+    exit_code_ = static_cast<int>(code);
   }
 
   // Asks for enough pieces to keep the threads busy until the next answer, and for no more: the cost of rows differs by
@@ -326,14 +323,14 @@ class Follower {
     const std::uint64_t waiting = desk.waiting();
     if (waiting > ahead / 2) return;
     asked_ = true;
-    say(Writer(Word::kAsk) << std::uint64_t{ahead - waiting});
+    team_.send(0, message_of(Word::kAsk, std::uint64_t{ahead - waiting}));
   }
 
   int wait_for_dismissal() {
     for (bool said = false; !exit_code_;) {
       if (must_say_ceased_ && !said) {
         said = true;
-        team_.send(0, std::move(Writer(Word::kCeased)).text());
+        team_.send(0, message_of(Word::kCeased));
       }
       const std::optional<Message> message = team_.receive();
       if (!message) {
@@ -342,7 +339,7 @@ class Follower {
         obey(reader);
       }
     }
-    team_.send(0, std::move(Writer(Word::kBye)).text());
+    team_.send(0, message_of(Word::kBye));
     return *exit_code_;
   }
 

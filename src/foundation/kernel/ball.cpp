@@ -201,7 +201,10 @@ Enclosure& Enclosure::operator-=(const Enclosure& other) {
   return *this;
 }
 
-Enclosure Enclosure::of(double value) { return Enclosure(kernel::to_ball(value, 0)); }
+Enclosure Enclosure::of(double value) {
+  const kernel::StandardArithmetic arithmetic;
+  return Enclosure(kernel::to_ball(value, 0));
+}
 
 double Enclosure::lower() const {
   const kernel::StandardArithmetic arithmetic;
@@ -258,7 +261,6 @@ slong meaningful_bits(const Ball& ball) {
 }
 
 PrintedBall print(const Ball& ball) {
-  const kernel::StandardArithmetic arithmetic;
   constexpr double kDecimalsPerBit = 0.30103;
   const auto digits = static_cast<slong>(static_cast<double>(meaningful_bits(ball)) * kDecimalsPerBit) + 5;
   char* raw = arb_get_str(ball.get(), digits, ARB_STR_MORE);
@@ -272,8 +274,14 @@ PrintedBall print(const Ball& ball) {
 
 }  // namespace
 
-std::string Enclosure::midpoint() const { return print(ball()).midpoint; }
-std::string Enclosure::radius() const { return print(ball()).radius; }
+std::string Enclosure::midpoint() const {
+  const kernel::StandardArithmetic arithmetic;
+  return print(ball()).midpoint;
+}
+std::string Enclosure::radius() const {
+  const kernel::StandardArithmetic arithmetic;
+  return print(ball()).radius;
+}
 
 }  // namespace exactff
 

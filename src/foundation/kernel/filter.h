@@ -181,4 +181,37 @@ class PlaneThrough {
   bool vanishes_[3] = {false, false, false};
 };
 
+// --- Bounds that several predicates share ---
+
+// Of directions from x, each component of which is known within a relative error of 2u, and the largest magnitudes |.|
+// of which are moderate: then underflow does not matter.
+[[nodiscard]] inline bool is_moderate(double size) { return size >= 0x1p-300 && size <= 0x1p300; }  // false for NaN
+
+// With c_i = b_j a_k - b_k a_j in doubles, each product errs by 5u and their difference by u more of its magnitude: in
+// all by 12u |a||b|; |c_i| <= 2 |a||b|. Then c . t is a sum of three products, each of which errs by
+// (12u + 2 (2u + u)) |a||b||t| = 18u |a||b||t|, and two sums of at most 6 |a||b||t|, so that the total is below
+// 54u + 12u = 66u.
+inline constexpr double kCrossError = 0x1p-49;   // of c_i, in |a||b|
+inline constexpr double kTripleError = 0x1p-46;  // of c . t, in |a||b||t|
+
+// N . t - N . s, |N| <= 1: the two sums err by 7u of the magnitudes of their terms, at most 3 |t| and 3 |s|, and their
+// difference by u of at most 3 (|t| + |s|) more: in all by 24u (|t| + |s|).
+inline constexpr double kDotDifferenceError = 0x1p-48;
+
+// --- Inverse depth ---
+
+// The plane N . (y - x) = c, c > 0, is met at x + d / w in direction d, with w = (N / c) . d.
+//
+// Filter, with u = 2^-53. Let e, f be the two edge vectors of a face that span its plane and s its first corner, as
+// rounded differences (relative error u), and A = |e| |f|, |.| being the largest magnitude. A component of N = e x f
+// errs by less than 8u A, c = N . s by less than 64u A |s| = C. A component of N / c then errs by at most
+// (8u A + |N / c| C) / (|c| - C) + u |N / c|, which is called E. For a corner t (relative error 2u), w errs by less
+// than (3 E + 18u |N / c|) |t|; the difference of two such numbers adds u of each, at most 3u |N / c| |t|. So error = 3
+// E + 32u |N / c| serves for differences as well, with a margin for its own rounding.
+struct InverseDepth {
+  Vec3 slope;          // N / c
+  double error = 0.0;  // w = slope . t within error |t|; infinite where the filter must decline
+};
+[[nodiscard]] InverseDepth inverse_depth(const Approx3& e, const Approx3& f, const Approx3& s);
+
 }  // namespace exactff::kernel

@@ -14,8 +14,8 @@ namespace exactff::kernel {
 
 // While an object of this class exists, its thread and the threads that it starts compute with this arithmetic. The
 // destructor restores the previous settings. Programs may use other settings: ray tracers often flush small numbers to
-// zero, and debuggers trap divisions by zero or inexact results. Every public function that guarantees that its values
-// or bytes depend on its arguments alone creates such an object first.
+// zero, and debuggers trap divisions by zero or inexact results. Every public function that computes creates such an
+// object first, and no other function does: validation/support/check_arithmetic.py checks it.
 class StandardArithmetic {
  public:
   StandardArithmetic() {

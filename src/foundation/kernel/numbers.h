@@ -25,6 +25,19 @@ using Rational = mpq_class;
 inline int sign(const Integer& a) { return sgn(a); }
 inline int sign(const Rational& a) { return sgn(a); }
 
+// The same of a - b.
+inline int compare(const Integer& a, const Integer& b) {
+  const int order = cmp(a, b);
+  return order < 0 ? -1 : order > 0 ? 1 : 0;
+}
+
+// In lowest terms.
+inline Rational ratio(const Integer& numerator, const Integer& denominator) {
+  Rational result(numerator, denominator);
+  result.canonicalize();
+  return result;
+}
+
 // Bits of |a|; 0 for 0.
 inline long bit_length(const Integer& a) {
   return sign(a) == 0 ? 0 : static_cast<long>(mpz_sizeinbase(a.get_mpz_t(), 2));
@@ -138,6 +151,8 @@ struct RationalVec3 {
   Rational x;
   Rational y;
   Rational z;
+
+  const Rational& operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
 };
 
 inline RationalVec3 to_rational(const Vec3& a) { return {to_rational(a.x), to_rational(a.y), to_rational(a.z)}; }
@@ -153,6 +168,9 @@ inline RationalVec3 operator*(const RationalVec3& a, const Rational& s) { return
 inline Rational dot(const RationalVec3& a, const RationalVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline RationalVec3 cross(const RationalVec3& a, const RationalVec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline Vec3 nearest_double(const RationalVec3& a) {
+  return {nearest_double(a.x), nearest_double(a.y), nearest_double(a.z)};
 }
 inline bool is_zero(const RationalVec3& a) { return sign(a.x) == 0 && sign(a.y) == 0 && sign(a.z) == 0; }
 

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -34,20 +33,37 @@ std::string contents(const fs::path& file) {
   return text.str();
 }
 
-class SpawnActions {
+// How the child is started: with files in place of its streams, and the default action of SIGXFSZ (file size limit
+// exceeded), whatever this process does.
+class Spawn {
  public:
-  SpawnActions() { ::posix_spawn_file_actions_init(&actions_); }
-  ~SpawnActions() { ::posix_spawn_file_actions_destroy(&actions_); }
-  SpawnActions(const SpawnActions&) = delete;
-  SpawnActions& operator=(const SpawnActions&) = delete;
+  Spawn() {
+    ::posix_spawn_file_actions_init(&actions_);
+    ::posix_spawnattr_init(&attributes_);
+    sigset_t restored;
+    ::sigemptyset(&restored);
+    ::sigaddset(&restored, SIGXFSZ);
+    ::posix_spawnattr_setsigdefault(&attributes_, &restored);
+    ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGDEF);
+  }
+  ~Spawn() {
+    ::posix_spawn_file_actions_destroy(&actions_);
+    ::posix_spawnattr_destroy(&attributes_);
+  }
+  Spawn(const Spawn&) = delete;
+  Spawn& operator=(const Spawn&) = delete;
 
   void open(int descriptor, const char* path, int flags) {
     ::posix_spawn_file_actions_addopen(&actions_, descriptor, path, flags, 0600);
   }
-  [[nodiscard]] const posix_spawn_file_actions_t* get() const { return &actions_; }
+  // Returns 0, or why the program could not be started.
+  [[nodiscard]] int run(char* const* arguments, char* const* environment, pid_t& child) const {
+    return ::posix_spawnp(&child, arguments[0], &actions_, &attributes_, arguments, environment);
+  }
 
  private:
   posix_spawn_file_actions_t actions_{};
+  posix_spawnattr_t attributes_{};
 };
 
 // Our environment with another locale: the scripts are UTF-8 on every machine.
@@ -65,26 +81,6 @@ class Utf8Environment {
  private:
   std::string locale_ = "LC_ALL=C.UTF-8";
   std::vector<char*> entries_;
-};
-
-// Restores the default action of SIGXFSZ (file size limit exceeded) in the child, whatever this process does.
-class SpawnAttributes {
- public:
-  SpawnAttributes() {
-    ::posix_spawnattr_init(&attributes_);
-    sigset_t restored;
-    ::sigemptyset(&restored);
-    ::sigaddset(&restored, SIGXFSZ);
-    ::posix_spawnattr_setsigdefault(&attributes_, &restored);
-    ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGDEF);
-  }
-  ~SpawnAttributes() { ::posix_spawnattr_destroy(&attributes_); }
-  SpawnAttributes(const SpawnAttributes&) = delete;
-  SpawnAttributes& operator=(const SpawnAttributes&) = delete;
-  [[nodiscard]] const posix_spawnattr_t* get() const { return &attributes_; }
-
- private:
-  posix_spawnattr_t attributes_{};
 };
 
 struct Child {
@@ -117,17 +113,16 @@ void wait_for(pid_t pid, const std::function<bool()>& cancelled, Child& child) {
 
 // Started without a shell, so no name needs quoting.
 Child run(const fs::path& script, const fs::path& out, const fs::path& err, const std::function<bool()>& cancelled) {
-  SpawnActions actions;
-  actions.open(STDIN_FILENO, "/dev/null", O_RDONLY);
-  actions.open(STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC);
-  actions.open(STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC);
-  const SpawnAttributes attributes;
+  Spawn spawn;
+  spawn.open(STDIN_FILENO, "/dev/null", O_RDONLY);
+  spawn.open(STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC);
+  spawn.open(STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC);
   std::string program = "gnuplot", defaults = "-d", file = script.string();
   const std::array<char*, 4> arguments = {program.data(), defaults.data(), file.data(), nullptr};
   const Utf8Environment environment;
   Child child;
   pid_t pid = 0;
-  child.error = ::posix_spawnp(&pid, "gnuplot", actions.get(), attributes.get(), arguments.data(), environment.get());
+  child.error = spawn.run(arguments.data(), environment.get(), pid);
   if (child.error == 0) wait_for(pid, cancelled, child);
   return child;
 }

@@ -1,7 +1,6 @@
 #include "table/csv.h"
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 #include "text/escape.h"
@@ -86,20 +85,14 @@ void CsvReader::take_head(std::string_view comment) {
   const bool was_table =
       comment.starts_with("# exactff ") && (is_old(" truth: ") || is_old(" matrix: ") || is_old(" radiosity: "));
   if (head_ || !(was_table || comment.starts_with("# {\"exactff\""))) return;
-  throw InputError({.file = lines_.file(),
-                    .line = 1,
-                    .what = "the head is not that of a table of this version",
-                    .why = "what its rows mean follows from the head",
-                    .suggestion = "compute the file again"});
+  text::refuse(lines_.file(), 1, "the head is not that of a table of this version",
+               "what its rows mean follows from the head", "compute the file again");
 }
 
 const ParsedHead& CsvReader::require_kind(std::string_view kind, const std::string& advice) {
   if (head_ && head_->kind == kind) return *head_;
-  throw InputError({.file = lines_.file(),
-                    .line = 1,
-                    .what = head_ ? "is a table of the kind " + text::in_quotes(head_->kind) : "has no head",
-                    .why = "a table of the kind " + text::in_quotes(kind) + " is needed",
-                    .suggestion = advice});
+  text::refuse(lines_.file(), 1, head_ ? "is a table of the kind " + text::in_quotes(head_->kind) : "has no head",
+               "a table of the kind " + text::in_quotes(kind) + " is needed", advice);
 }
 
 void CsvReader::take_names() {
@@ -216,12 +209,9 @@ bool parse_cell(const std::string& field, Type type, Cell& cell) {
     case Type::kFlag:
       if (field == "yes" || field == "no") cell = field == "yes";
       return cell.index() != 0;
-    default: {
-      std::uint64_t whole = 0;
-      const auto end = std::from_chars(field.data(), field.data() + field.size(), whole);
-      if (end.ec == std::errc{} && end.ptr == field.data() + field.size()) cell = whole;
+    default:
+      if (const auto whole = text::whole_number<std::uint64_t>(field)) cell = *whole;
       return cell.index() != 0;
-    }
   }
 }
 

@@ -16,7 +16,6 @@
 
 #include "exactff/geometry.h"
 #include "exactff/table.h"
-#include "text/csv_dialect.h"
 #include "text/csv_lines.h"
 #include "text/text_lines.h"
 
@@ -65,7 +64,7 @@ class CsvLine {
 
 enum class NotFinite { kRefuse, kAccept };
 
-// Reads a CSV file with a row of column names, row by row, in either dialect (text/csv_dialect.h). Collects problems.
+// Reads a CSV file with a row of column names, row by row, in either dialect (text/csv_lines.h). Collects problems.
 class CsvReader {
  public:
   // Reads the file up to and including the column names. `purpose` completes "give ...". Refuses a file of exactff

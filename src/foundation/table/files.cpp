@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <variant>
 
 #include "exactff/table.h"
 #include "files/file.h"
@@ -14,7 +15,6 @@
 #include "kernel/float_environment.h"
 #include "table/csv.h"
 #include "text/escape.h"
-#include "text/json_document.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
@@ -29,11 +29,7 @@ constexpr const char* kHeadArray = "head";
 constexpr const char* kPurpose = "a table that exactff wrote";
 
 [[noreturn]] void refuse_damaged(const fs::path& file, std::size_t line, const std::string& what) {
-  throw InputError({.file = file.string(),
-                    .line = line,
-                    .what = what,
-                    .why = "the table cannot be read",
-                    .suggestion = "write it again"});
+  text::refuse(file, line, what, "the table cannot be read", "write it again");
 }
 
 // --- NumPy archives ---
@@ -62,44 +58,45 @@ void write_npz(const Table& table, const fs::path& path) {
   file.commit();
 }
 
+// The values of a column; flags are 0 and 1.
+using Array =
+    std::variant<std::vector<std::string>, std::vector<double>, std::vector<std::uint64_t>, std::vector<std::uint8_t>>;
+
+Array array_of(const files::NpzReader& archive, const Column& column) {
+  switch (column.type) {
+    case Type::kText:
+      return archive.texts(column.name);
+    case Type::kNumber:
+      return archive.numbers<double>(column.name);
+    case Type::kCount:
+      return archive.numbers<std::uint64_t>(column.name);
+    default:
+      return archive.numbers<std::uint8_t>(column.name);
+  }
+}
+
+Cell cell_of(const std::string& text) { return std::string_view(text); }
+Cell cell_of(double number) { return number; }
+Cell cell_of(std::uint64_t count) { return count; }
+Cell cell_of(std::uint8_t flag) { return flag != 0; }
+
 Table read_npz(const fs::path& path) {
   const files::NpzReader archive(path);
   const std::optional<ParsedHead> head = parse_head(archive.word(kHeadArray));
   if (!head) refuse_damaged(path, 0, "the array 'head' is not the head of a table of this version");
-  std::vector<std::vector<std::string>> texts(head->columns.size());
-  std::vector<std::vector<double>> numbers(head->columns.size());
-  std::vector<std::vector<std::uint64_t>> counts(head->columns.size());
-  std::optional<std::size_t> rows;
-  for (std::size_t i = 0; i < head->columns.size(); ++i) {
-    const Column& column = head->columns[i];
-    if (column.type == Type::kText) texts[i] = archive.texts(column.name);
-    if (column.type == Type::kNumber) numbers[i] = archive.numbers<double>(column.name);
-    if (column.type == Type::kCount) counts[i] = archive.numbers<std::uint64_t>(column.name);
-    if (column.type == Type::kFlag) {
-      const std::vector<std::uint8_t> flags = archive.numbers<std::uint8_t>(column.name);
-      counts[i].assign(flags.begin(), flags.end());
-    }
-    const std::size_t size = texts[i].size() + numbers[i].size() + counts[i].size();
-    if (rows.value_or(size) != size) refuse_damaged(path, 0, "the arrays of the columns have different lengths");
-    rows = size;
+  std::vector<Array> arrays;
+  for (const Column& column : head->columns) {
+    arrays.push_back(array_of(archive, column));
+    const auto size = [](const Array& array) { return std::visit([](const auto& all) { return all.size(); }, array); };
+    if (size(arrays.back()) == size(arrays.front())) continue;
+    refuse_damaged(path, 0, "the arrays of the columns have different lengths");
   }
   Table table(head->kind, head->head, head->columns);
-  std::vector<Cell> cells(head->columns.size());
-  for (std::size_t row = 0; row < *rows; ++row) {
+  std::vector<Cell> cells(arrays.size());
+  const std::size_t rows = std::visit([](const auto& all) { return all.size(); }, arrays.front());
+  for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      switch (head->columns[i].type) {
-        case Type::kText:
-          cells[i] = std::string_view(texts[i][row]);
-          break;
-        case Type::kNumber:
-          cells[i] = numbers[i][row];
-          break;
-        case Type::kCount:
-          cells[i] = counts[i][row];
-          break;
-        case Type::kFlag:
-          cells[i] = counts[i][row] != 0;
-      }
+      cells[i] = std::visit([row](const auto& all) { return cell_of(all[row]); }, arrays[i]);
     }
     table.append(cells);
   }
@@ -200,6 +197,7 @@ Format format_of(const fs::path& file) {
 }  // namespace
 
 Table read(const fs::path& file) {
+  const kernel::StandardArithmetic arithmetic;
   switch (format_of(file)) {
     case Format::kNpz:
       return read_npz(file);
@@ -246,6 +244,7 @@ void write(const Table& table, const fs::path& path) {
 }
 
 std::string csv_text(const Table& table) {
+  const kernel::StandardArithmetic arithmetic;
   std::string text = csv_head(table.kind(), table.head(), table.columns());
   for (std::size_t row = 0; row < table.rows(); ++row) {
     CsvLine line(text);

@@ -11,7 +11,7 @@
 #include "kernel/expect.h"
 #include "table/csv.h"
 #include "table/rows.h"
-#include "text/json_document.h"
+#include "text/escape.h"
 #include "text/phrases.h"
 
 namespace exactff::table {

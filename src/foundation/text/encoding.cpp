@@ -1,7 +1,9 @@
 #include "text/encoding.h"
 
 #include <array>
+#include <boost/locale/utf.hpp>
 #include <cstdint>
+#include <iterator>
 
 namespace exactff::text {
 namespace {
@@ -14,24 +16,9 @@ constexpr std::array<char32_t, 32> kWindows1252 = {0x20AC, 0x0081, 0x201A, 0x019
 
 }  // namespace
 
-void append_utf8(std::string& text, char32_t code) {
-  const auto tail = [&](unsigned shift) { text += static_cast<char>(0x80U | ((code >> shift) & 0x3FU)); };
-  if (code < 0x80) {
-    text += static_cast<char>(code);
-  } else if (code < 0x800) {
-    text += static_cast<char>(0xC0U | (code >> 6U));
-    tail(0);
-  } else if (code < 0x10000) {
-    text += static_cast<char>(0xE0U | (code >> 12U));
-    tail(6);
-    tail(0);
-  } else {
-    text += static_cast<char>(0xF0U | (code >> 18U));
-    tail(12);
-    tail(6);
-    tail(0);
-  }
-}
+using Utf8 = boost::locale::utf::utf_traits<char>;
+
+void append_utf8(std::string& text, char32_t code) { Utf8::encode(code, std::back_inserter(text)); }
 
 bool is_utf8(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
@@ -54,39 +41,11 @@ std::string in_utf8(std::string_view text) {
 
 // --- Characters ---
 
-namespace {
-
-struct Lead {
-  std::size_t bytes = 0;  // 0: not the beginning of a character
-  char32_t least = 0;     // smaller codes have shorter forms
-};
-
-Lead lead_of(unsigned char byte) {
-  if (byte < 0x80) return {1, 0};
-  if (byte < 0xC2) return {};
-  if (byte < 0xE0) return {2, 0x80};
-  if (byte < 0xF0) return {3, 0x800};
-  if (byte < 0xF5) return {4, 0x10000};
-  return {};
-}
-
-bool is_scalar_value(char32_t code) { return code <= 0x10FFFF && (code < 0xD800 || code > 0xDFFF); }
-
-}  // namespace
-
 Character character_at(std::string_view text, std::size_t at) {
-  const auto first = static_cast<unsigned char>(text[at]);
-  const Character broken{first, 1, false};
-  const Lead lead = lead_of(first);
-  if (lead.bytes == 0 || at + lead.bytes > text.size()) return broken;
-  char32_t code = lead.bytes == 1 ? first : first & (0x7FU >> lead.bytes);
-  for (std::size_t i = 1; i < lead.bytes; ++i) {
-    const auto next = static_cast<unsigned char>(text[at + i]);
-    if ((next & 0xC0U) != 0x80U) return broken;
-    code = (code << 6U) | (next & 0x3FU);
-  }
-  if (code < lead.least || !is_scalar_value(code)) return broken;
-  return {code, lead.bytes, true};
+  const auto* next = text.data() + at;
+  const boost::locale::utf::code_point code = Utf8::decode(next, text.data() + text.size());
+  if (!boost::locale::utf::is_valid_codepoint(code)) return {static_cast<unsigned char>(text[at]), 1, false};
+  return {code, static_cast<std::size_t>(next - text.data()) - at, true};
 }
 
 std::string_view beginning(std::string_view text, std::size_t bytes) {

@@ -1,6 +1,7 @@
 #include "text/escape.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "text/encoding.h"
 #include "text/phrases.h"
@@ -80,6 +81,39 @@ std::string utf8(std::string_view text) {
   });
   return well_formed;
 }
+
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json well_formed(const ordered_json& json) {
+  if (json.is_string()) return utf8(json.get_ref<const std::string&>());
+  if (!json.is_structured()) return json;
+  ordered_json copy = json.is_array() ? ordered_json::array() : ordered_json::object();
+  for (const auto& [key, value] : json.items()) {
+    if (json.is_array()) {
+      copy.push_back(well_formed(value));
+    } else {
+      copy[utf8(key)] = well_formed(value);
+    }
+  }
+  return copy;
+}
+
+// The characters that JSON must escape are already escaped. Other characters above ASCII can only be within a string.
+std::string with_escaped_controls(const std::string& document) {
+  std::string safe;
+  for_each_character(document, [&](const Character& c, std::string_view bytes) {
+    const bool stays = c.code < 0x7F || !is_control(c.code);
+    safe += stays ? std::string(bytes) : "\\u" + hexadecimal(c.code, 4);
+  });
+  return safe;
+}
+
+}  // namespace
+
+std::string json_document(const ordered_json& json) { return with_escaped_controls(well_formed(json).dump(2)); }
+std::string json_line(const ordered_json& json) { return with_escaped_controls(well_formed(json).dump()); }
 
 std::string csv_field(std::string_view text) {
   std::string field = in_utf8(text);

@@ -8,6 +8,7 @@
 // breaks. CSV output converts text that is not UTF-8 (text/encoding.h), just as scene readers convert names.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
@@ -20,8 +21,13 @@ namespace exactff::text {
 // For HTML, SVG and other XML, as content or within double quotes. Line feeds and tabs stay.
 [[nodiscard]] std::string html(std::string_view text);
 
-// Well-formed UTF-8, as JSON requires; characters are not changed, since JSON can hold them all. See
-// text/json_document.h.
+// The JSON output of the program, indented by two. Every string and key may hold any bytes: bytes that are not UTF-8
+// become visible escapes, since JSON cannot hold them. Control characters stay in the string and are written as \u001b,
+// \u0085 or \u202e, so that the document can be printed to a terminal.
+[[nodiscard]] std::string json_document(const nlohmann::ordered_json& json);
+// The same in one line.
+[[nodiscard]] std::string json_line(const nlohmann::ordered_json& json);
+// As in such strings: well-formed UTF-8, whose characters are not changed.
 [[nodiscard]] std::string utf8(std::string_view text);
 
 // One field of a CSV row, in UTF-8, quoted where it must be (RFC 4180). Reads back as the same text, except for line

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cstdint>
 #include <numeric>
 #include <optional>
@@ -12,6 +11,8 @@
 #include <unordered_map>
 #include <utility>
 #include <vector>
+
+#include "text/number_text.h"
 
 namespace exactff::text {
 
@@ -101,11 +102,8 @@ struct NumberedName {
 inline std::optional<NumberedName> numbered_name(std::string_view name) {
   const std::size_t colon = name.rfind(':');
   if (colon == std::string_view::npos) return std::nullopt;
-  const std::string_view digits = name.substr(colon + 1);
-  NumberedName result{std::string(name.substr(0, colon))};
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), result.number);
-  if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
-  return result;
+  const auto number = whole_number<std::uint64_t>(name.substr(colon + 1));
+  return number ? std::optional(NumberedName{std::string(name.substr(0, colon)), *number}) : std::nullopt;
 }
 
 // The same of NAME/k, too: of patches that are made from geometry.

@@ -150,22 +150,14 @@ std::string describe(NumberFault fault, std::string_view text) {
 }
 
 std::string advice(NumberFault fault) {
-  switch (fault) {
-    case NumberFault::kNone:
-      return {};
-    case NumberFault::kNotANumber:
-    case NumberFault::kHexadecimal:
-      return "write a decimal number such as 1.5 or -2e-3";
-    case NumberFault::kNotFinite:
-      return "give a finite number";
-    case NumberFault::kComma:
-      return "write a decimal point";
-    case NumberFault::kPoint:
-      return "write all numbers alike";
-    case NumberFault::kTooLarge:
-      return "give a smaller number; the largest double is about 1.8e308";
-  }
-  return {};
+  constexpr std::array<const char*, 7> kAdvice = {"",
+                                                  "write a decimal number such as 1.5 or -2e-3",
+                                                  "give a finite number",
+                                                  "write a decimal number such as 1.5 or -2e-3",
+                                                  "write a decimal point",
+                                                  "give a smaller number; the largest double is about 1.8e308",
+                                                  "write all numbers alike"};
+  return kAdvice[static_cast<std::size_t>(fault)];
 }
 
 }  // namespace exactff::text

@@ -1,6 +1,8 @@
 // Decimal text to doubles, independent of the locale.
 #pragma once
 
+#include <charconv>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,13 +15,22 @@ enum class NumberFault {
   kHexadecimal,
   kComma,     // a number except for a decimal comma
   kTooLarge,  // rounds to infinity
-  kPoint,     // a decimal point beside numbers with decimal commas (csv_dialect.h)
+  kPoint,     // a decimal point beside numbers with decimal commas (csv_lines.h)
 };
 
 struct ParsedNumber {
   double value = 0.0;
   NumberFault fault = NumberFault::kNone;
 };
+
+// The whole text as decimal digits. Nothing for any other text or a value out of range.
+template <class Whole>
+[[nodiscard]] std::optional<Whole> whole_number(std::string_view text) {
+  Whole value{};
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end.ec != std::errc{} || end.ptr != text.data() + text.size()) return std::nullopt;
+  return value;
+}
 
 // Correctly rounded to nearest, ties to even, gradual underflow included: 1e-400, -1e-400 and -0 give 0.
 ParsedNumber parse_number(std::string_view text);

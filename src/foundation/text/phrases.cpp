@@ -11,12 +11,15 @@
 namespace exactff::text {
 namespace {
 
-std::string fixed(double value, int decimals) {
+// By std::to_chars, whose further arguments are a format and a number of digits.
+template <class... How>
+std::string decimal(double value, How... how) {
   std::array<char, 400> buffer;
-  const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed, decimals);
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, how...);
   return {buffer.data(), end.ptr};
 }
+
+std::string fixed(double value, int decimals) { return decimal(value, std::chars_format::fixed, decimals); }
 
 // "4.1e-05" to "4.1·10⁻⁵".
 std::string with_power_of_ten(const std::string& text) {
@@ -33,11 +36,7 @@ std::string superscript(int number) {
   return text;
 }
 
-std::string shortest(double value) {
-  std::array<char, 64> buffer;
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return {buffer.data(), end.ptr};
-}
+std::string shortest(double value) { return decimal(value); }
 
 std::string rounded(double value, int digits) {
   if (value == 0.0) return "0";
@@ -85,12 +84,7 @@ std::string counted_of(std::size_t count, std::size_t whole, std::string_view no
   return (count == whole ? std::string("every one") : std::to_string(count)) + " of " + counted(whole, noun);
 }
 
-std::string short_number(double value, int digits) {
-  std::array<char, 64> buffer;
-  const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
-  return {buffer.data(), end.ptr};
-}
+std::string short_number(double value, int digits) { return decimal(value, std::chars_format::general, digits); }
 
 std::string hexadecimal(std::uint64_t value, std::size_t digits) {
   std::string text(digits, '0');
@@ -104,33 +98,23 @@ std::string program_version() { return std::string("exactff ") + kVersion; }
 
 namespace {
 
-// "4.1e-05" as "4.1·10⁻⁵".
-std::string with_superscript(const std::string& decimal) {
-  const std::size_t e = decimal.find('e');
-  return e == std::string::npos ? decimal
-                                : decimal.substr(0, e) + "·10" + superscript(std::stoi(decimal.substr(e + 1)));
-}
-
-double read_back(const std::string& decimal) {
-  const ParsedNumber number = parse_number(decimal);
-  return number.fault == NumberFault::kNone ? number.value : not_finite_value(decimal, number.fault);
+double read_back(const std::string& text) {
+  const ParsedNumber number = parse_number(text);
+  return number.fault == NumberFault::kNone ? number.value : not_finite_value(text, number.fault);
 }
 
 enum class Side { kBelow, kAbove };
 
 // The decimal of so many significant digits that is nearest to the value, or the next one on the other side.
 double rounded_to(Side side, double value, int digits) {
-  std::array<char, 64> buffer;
-  const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific, digits - 1);
-  std::string decimal(buffer.data(), end.ptr);
-  const double nearest = read_back(decimal);
+  std::string text = decimal(value, std::chars_format::scientific, digits - 1);
+  const double nearest = read_back(text);
   if (side == Side::kBelow ? nearest <= value : nearest >= value) return nearest;
-  const std::size_t e = decimal.find('e');
-  const int exponent = std::stoi(decimal.substr(e + 1)) - (digits - 1);
-  decimal.resize(e);
-  std::erase(decimal, '.');
-  const long long next = std::stoll(decimal) + (side == Side::kBelow ? -1 : 1);
+  const std::size_t e = text.find('e');
+  const int exponent = std::stoi(text.substr(e + 1)) - (digits - 1);
+  text.resize(e);
+  std::erase(text, '.');
+  const long long next = std::stoll(text) + (side == Side::kBelow ? -1 : 1);
   return read_back(std::to_string(next) + 'e' + std::to_string(exponent));
 }
 
@@ -143,7 +127,7 @@ double rounded_outward(Side side, double value, double tolerance) {
   return value;
 }
 
-std::string six_digits(double value) { return with_superscript(short_number(value == 0.0 ? 0.0 : value, 6)); }
+std::string six_digits(double value) { return with_power_of_ten(short_number(value == 0.0 ? 0.0 : value, 6)); }
 
 }  // namespace
 
@@ -152,8 +136,8 @@ std::string interval(double lower, double upper, double limit) {
   if (six_digits(lower) == six_digits(upper)) return six_digits(lower);
   const double tolerance = kHundredth * (upper - lower), low = rounded_outward(Side::kBelow, lower, tolerance),
                high = rounded_outward(Side::kAbove, upper, tolerance);
-  return '[' + with_superscript(shortest(low)) + ", " +
-         (high > limit ? six_digits(limit) : with_superscript(shortest(high))) + ']';
+  return '[' + with_power_of_ten(shortest(low)) + ", " +
+         (high > limit ? six_digits(limit) : with_power_of_ten(shortest(high))) + ']';
 }
 
 }  // namespace exactff::text

@@ -1,7 +1,6 @@
 #include "text/settings.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -59,10 +58,8 @@ std::optional<SettingValue> fit(const SettingSpec& spec, SettingValue value) {
 std::optional<SettingValue> read(const SettingSpec& spec, std::string_view text) {
   if (std::holds_alternative<std::string>(spec.fallback)) return SettingValue(std::string(text));
   if (std::holds_alternative<std::int64_t>(spec.fallback)) {
-    std::int64_t value = 0;
-    const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (text.empty() || end.ec != std::errc{} || end.ptr != text.data() + text.size()) return std::nullopt;
-    return SettingValue(value);
+    const auto whole = text::whole_number<std::int64_t>(text);
+    return whole ? std::optional<SettingValue>(*whole) : std::nullopt;
   }
   const text::ParsedNumber number = text::parse_number(text);
   if (number.fault != text::NumberFault::kNone) return std::nullopt;
@@ -107,6 +104,7 @@ SettingSpec seed_setting() {
 }
 
 std::string allowed(const SettingSpec& spec) {
+  const kernel::StandardArithmetic arithmetic;
   if (std::holds_alternative<std::string>(spec.fallback)) return "one of " + text::joined(spec.words);
   if (std::holds_alternative<double>(spec.fallback)) {
     return "a number" + range(spec.lowest, spec.highest, spec.highest < std::numeric_limits<double>::max());
@@ -201,8 +199,14 @@ std::string Settings::text_of(bool all) const {
   return text;
 }
 
-std::string Settings::text() const { return text_of(true); }
-std::string Settings::short_text() const { return text_of(false); }
+std::string Settings::text() const {
+  const kernel::StandardArithmetic arithmetic;
+  return text_of(true);
+}
+std::string Settings::short_text() const {
+  const kernel::StandardArithmetic arithmetic;
+  return text_of(false);
+}
 
 bool Settings::names_equal(const Settings& other) const {
   const auto a = specs(), b = other.specs();

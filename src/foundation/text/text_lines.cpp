@@ -7,6 +7,7 @@
 
 #include "text/encoding.h"
 #include "text/escape.h"
+#include "text/refuse.h"
 
 namespace exactff::text {
 namespace {
@@ -118,14 +119,13 @@ namespace {
 
 [[noreturn]] void refuse_binary(const std::string& file, std::string_view block, const std::string& purpose) {
   const bool utf16 = block.starts_with("\xFF\xFE") || block.starts_with("\xFE\xFF");
-  throw InputError({file, 0, utf16 ? "is UTF-16 text" : "is not a text file",
-                    utf16 ? "only UTF-8 is read" : "it contains zero bytes",
-                    utf16 ? "save it as UTF-8" : "give " + purpose});
+  if (utf16) refuse(file, "is UTF-16 text", "only UTF-8 is read", "save it as UTF-8");
+  refuse(file, "is not a text file", "it contains zero bytes", "give " + purpose);
 }
 
 [[noreturn]] void cannot_read(const std::string& file, const std::string& purpose) {
   const std::string reason = errno != 0 ? std::strerror(errno) : "reading failed";
-  throw InputError({file, 0, "cannot be read to its end", reason, "give " + purpose + " that can be read"});
+  refuse(file, "cannot be read to its end", reason, "give " + purpose + " that can be read");
 }
 
 std::size_t read_block(std::istream& in, std::span<char> block, const std::string& file, const std::string& purpose) {
@@ -163,11 +163,11 @@ std::string read_text(std::istream& in, const std::string& file, const std::stri
 std::ifstream open_text_file(const std::filesystem::path& path, const std::string& purpose) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
-    throw InputError({path.string(), 0, "is a folder", "a file is needed", "name " + purpose + " in this folder"});
+    refuse(path, "is a folder", "a file is needed", "name " + purpose + " in this folder");
   }
   errno = 0;
   std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError({path.string(), 0, "cannot be opened", std::strerror(errno), "check the path"});
+  if (!in) refuse(path, "cannot be opened", std::strerror(errno), "check the path");
   return in;
 }
 

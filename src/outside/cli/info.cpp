@@ -18,7 +18,6 @@
 #include "flags/values.h"
 #include "scene/selections.h"
 #include "text/escape.h"
-#include "text/json_document.h"
 #include "text/phrases.h"
 
 namespace exactff::cli {

@@ -8,7 +8,7 @@
 #include "cli/point.h"
 #include "exactff/version.h"
 #include "report/report.h"
-#include "text/json_document.h"
+#include "text/escape.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 

@@ -19,7 +19,7 @@
 #include "flags/values.h"
 #include "radiosity/narrowing.h"
 #include "scene/selections.h"
-#include "text/json_document.h"
+#include "text/escape.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"

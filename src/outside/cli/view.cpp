@@ -18,12 +18,12 @@
 #include "flags/scene.h"
 #include "flags/values.h"
 #include "table/rows.h"
-#include "text/json_document.h"
+#include "text/escape.h"
 #include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "vtk/vtk.h"
-#include "whole_view/referee.h"
+#include "whole_view/light.h"
 
 namespace exactff::cli {
 

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "flags/values.h"
-#include "kernel/float_environment.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -369,7 +368,6 @@ void add_scene(const StudyLine& line, const std::string& file, int threads, repo
 }  // namespace
 
 report::Plan read_study_file(const std::filesystem::path& file, int threads) {
-  const kernel::StandardArithmetic arithmetic;
   const StudyFile study = parse_study_file(file);
   report::Plan plan;
   plan.title = study.title.empty() ? short_name(file.string()) : study.title;

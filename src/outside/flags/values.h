@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <charconv>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -14,20 +13,14 @@
 
 #include "exactff/geometry.h"
 #include "exactff/scene.h"
+#include "text/number_text.h"
 
 namespace exactff::flags {
 
 // The parts between the commas. An empty text has one empty part.
 std::vector<std::string> split_list(const std::string& text);
 
-// Parses the whole text as decimal digits. Returns nothing for any other text or a value out of range.
-template <class Whole>
-std::optional<Whole> whole_number(std::string_view text) {
-  Whole value{};
-  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || end.ec != std::errc{} || end.ptr != text.data() + text.size()) return std::nullopt;
-  return value;
-}
+using text::whole_number;
 // "32x16". Nothing for any other text.
 [[nodiscard]] std::optional<std::pair<int, int>> numbers_across(std::string_view text);
 

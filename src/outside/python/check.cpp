@@ -7,6 +7,7 @@
 #include "exactff/truth.h"
 #include "files/file.h"
 #include "flags/values.h"
+#include "kernel/float_environment.h"
 #include "python/bindings.h"
 #include "text/refuse.h"
 #include "text/settings.h"
@@ -64,6 +65,7 @@ py::tuple tuple_of(const check::Report& report) {
 
 // Adds the verdicts on the baseline, and writes the files.
 py::tuple result_of(check::Report report, const CheckFiles& files) {
+  const kernel::StandardArithmetic arithmetic;
   if (files.baseline) check::hold_against_baseline(report, *files.baseline, files.slack);
   if (files.junit) write_file(*files.junit, check::junit_xml(report));
   if (files.write_baseline && check::may_be_recorded(report)) {
@@ -103,6 +105,7 @@ py::tuple scoreboard(const std::filesystem::path& truth, const std::vector<std::
                      const Matching& matching, const check::Criteria& limits,
                      const std::vector<std::optional<double>>& seconds,
                      const std::optional<std::filesystem::path>& folder) {
+  const kernel::StandardArithmetic arithmetic;
   check::Scoreboard board;
   {
     const py::gil_scoped_release released;

@@ -155,7 +155,6 @@ void require_file(const std::filesystem::path& file) {
 
 std::vector<Report> compare_all(const std::filesystem::path& truth, std::span<const std::filesystem::path> candidates,
                                 const Options& asked) {
-  const kernel::StandardArithmetic arithmetic;
   const bool suite = is_suite(truth);
   Options options = asked;
   if (suite) options.match.partial = options.criteria.per_source = true;
@@ -186,6 +185,7 @@ std::vector<Report> compare_all(const std::filesystem::path& truth, std::span<co
 }
 
 Report compare(const std::filesystem::path& truth, const std::filesystem::path& candidate, const Options& options) {
+  const kernel::StandardArithmetic arithmetic;
   return std::move(compare_all(truth, std::span(&candidate, 1), options).front());
 }
 

@@ -7,7 +7,6 @@
 
 #include "check/report.h"
 #include "exr/exr_file.h"
-#include "kernel/float_environment.h"
 #include "kernel/poll.h"
 #include "text/names.h"
 #include "text/phrases.h"
@@ -108,7 +107,6 @@ class ImageReader {
 }  // namespace
 
 Images read_images(const fs::path& truth, const fs::path& candidate, const ImageLayers& layers, bool partial) {
-  const kernel::StandardArithmetic arithmetic;
   return ImageReader(truth, candidate, layers).read(partial);
 }
 

@@ -10,7 +10,6 @@
 #include "check/tables.h"
 #include "kernel/float_environment.h"
 #include "text/escape.h"
-#include "text/json_document.h"
 #include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -130,10 +129,7 @@ ordered_json json_of(const Report& report) {
   return json;
 }
 
-std::string json_text(const Report& report) {
-  const kernel::StandardArithmetic arithmetic;
-  return text::json_document(json_of(report)) + '\n';
-}
+std::string json_text(const Report& report) { return text::json_document(json_of(report)) + '\n'; }
 
 // --- Baselines ---
 
@@ -191,7 +187,6 @@ void hold(Report& report, const ordered_json& baseline, const std::string& sourc
 }  // namespace
 
 std::string baseline_text(const Report& report) {
-  const kernel::StandardArithmetic arithmetic;
   ordered_json json;
   json["baseline"] = kFormat;
   json["program"] = text::program_version();
@@ -212,7 +207,6 @@ bool may_be_recorded(const Report& report) {
 }
 
 void hold_against_baseline(Report& report, const std::filesystem::path& path, double slack) {
-  const kernel::StandardArithmetic arithmetic;
   if (!(slack >= 0.0) || std::isinf(slack)) {
     text::refuse("the slack for the baseline is " + text::shortest(slack),
                  "the slack is a share of the recorded errors", "give 0 or more, for example 0.1");
@@ -409,7 +403,6 @@ std::string suite(const Report& report, Counts& all) {
 }  // namespace
 
 std::string junit_xml(std::span<const Report> reports) {
-  const kernel::StandardArithmetic arithmetic;
   Counts all;
   std::string suites;
   for (const Report& report : reports) suites += suite(report, all);
@@ -445,7 +438,6 @@ const RowError* row_to_show(const Report& report, const Verdict& verdict) {
 }  // namespace
 
 std::string github_annotations(const Report& report) {
-  const kernel::StandardArithmetic arithmetic;
   std::string text;
   for (const Verdict& verdict : report.verdicts) {
     if (verdict.passed) continue;
@@ -462,7 +454,6 @@ std::string github_annotations(const Report& report) {
 }
 
 std::string github_annotations(const InputError& error) {
-  const kernel::StandardArithmetic arithmetic;
   constexpr std::size_t kShown = 10;  // the runner shows no more for one step
   std::string text;
   for (const Problem& problem : error.problems()) {

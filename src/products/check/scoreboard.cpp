@@ -12,7 +12,6 @@
 #include "page/output_folder.h"
 #include "page/page_text.h"
 #include "text/escape.h"
-#include "text/json_document.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
@@ -243,6 +242,7 @@ std::string json_text(const Scoreboard& board) {
 }  // namespace
 
 double digits_of(double relative_error) {
+  const kernel::StandardArithmetic arithmetic;
   return relative_error == 0.0 ? kMostDigits : std::clamp(-std::log10(relative_error), 0.0, kMostDigits);
 }
 
@@ -258,6 +258,7 @@ std::vector<std::string> program_names(std::span<const std::filesystem::path> ca
 
 Scoreboard scoreboard(const std::filesystem::path& truth, std::span<const std::filesystem::path> candidates,
                       const Options& options) {
+  const kernel::StandardArithmetic arithmetic;
   std::vector<Report> reports = compare_all(truth, candidates, options);
   const std::vector<std::string> names = program_names(candidates);
   Scoreboard board;
@@ -344,7 +345,6 @@ files::WorkFolder scratch_folder() {
 }  // namespace
 
 Histogram histogram(const Report& report, int bins_per_decade, std::size_t most_bins) {
-  const kernel::StandardArithmetic arithmetic;
   Histogram result;
   const std::vector<double>& errors = report.magnitudes;
   const auto nonzero = std::upper_bound(errors.begin(), errors.end(), 0.0);
@@ -363,7 +363,6 @@ Histogram histogram(const Report& report, int bins_per_decade, std::size_t most_
 }
 
 std::string histogram_script(const Report& report) {
-  const kernel::StandardArithmetic arithmetic;
   constexpr int kBinsPerDecade = 4;
   constexpr std::size_t kMostBins = 120;
   const Histogram shown = histogram(report, kBinsPerDecade, kMostBins);
@@ -377,7 +376,6 @@ std::string histogram_script(const Report& report) {
 
 // A step of a line for each row would be too many.
 std::string shares_script(const Scoreboard& board) {
-  const kernel::StandardArithmetic arithmetic;
   constexpr std::size_t kMostPoints = 400;
   std::vector<page::Series> lines;
   for (const Score& score : board.scores) {

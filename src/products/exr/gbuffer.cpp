@@ -302,6 +302,7 @@ FrameValues::FrameValues(const Frame& frame) : frame_(frame), marks_(frame.marks
 }
 
 void FrameValues::set(std::size_t receiver, const Rgb& value, bool certified) {
+  const kernel::StandardArithmetic arithmetic;
   const std::uint32_t pixel = frame_.pixels.at(receiver);
   if (certified) {
     values_[pixel] = value;

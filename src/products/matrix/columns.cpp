@@ -238,6 +238,7 @@ std::vector<std::string> sums_among(std::vector<std::string> further) {
 
 table::Table table_of(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options,
                       const Balanced* balanced) {
+  const kernel::StandardArithmetic arithmetic;
   const Factors& all = matrix.factors;
   Surroundings surroundings{!matrix.back.empty(), !matrix.open.empty(), !matrix.buried.empty()};
   const std::span<const GroupSum> sums = balanced != nullptr ? std::span<const GroupSum>() : matrix.sums;

@@ -76,7 +76,6 @@ class EntryJobs {
   // Calls take(entry, factor) in the order of entries_of. From any thread.
   template <class Take>
   void compute(std::size_t job, const Take& take) const {
-    const kernel::StandardArithmetic arithmetic;
     const std::vector<std::size_t> entries = entries_of(job);
     if (job < pairs_.count()) {
       std::size_t next = 0;

@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "files/numpy.h"
-#include "text/csv_dialect.h"
+#include "text/csv_lines.h"
 #include "text/names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"

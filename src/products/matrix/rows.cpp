@@ -220,6 +220,7 @@ Reciprocity reciprocity(const Matrix& matrix) {
 // --- For ParaView ---
 
 void write_vtk(const Scene& scene, const Matrix& matrix, const std::filesystem::path& file) {
+  const kernel::StandardArithmetic arithmetic;
   const Factors& all = matrix.factors;
   EXACTFF_EXPECT(!all.from.empty());
   const auto field = [&](const char* name, double ViewFactor::*number) {

@@ -99,6 +99,7 @@ table::Fields<SolutionFile::Row> columns(bool variation) {
 
 table::Table table_of(const Scene& scene, const Solution& solution, const ViewFactorOptions& options,
                       const Origin& origin) {
+  const kernel::StandardArithmetic arithmetic;
   table::Head head;
   matrix::set_scene(head, scene);
   if (origin.divided) head.set("divided", *origin.divided);
@@ -167,6 +168,7 @@ SolutionFile read_solution(const std::filesystem::path& path) {
 // --- For ParaView ---
 
 void write_vtk(const Scene& scene, const Solution& solution, const std::filesystem::path& file) {
+  const kernel::StandardArithmetic arithmetic;
   const auto field = [&](const char* name, std::vector<BoundedValue> Channel::*quantity, double BoundedValue::*number) {
     return vtk::field_of_faces(scene, name, solution.patches, kChannelNames.size(), [&](std::size_t i, std::size_t c) {
       return (solution.channels[c].*quantity)[i].*number;

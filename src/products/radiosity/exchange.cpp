@@ -151,6 +151,7 @@ void refuse_colours(const matrix::ProgramFormat& format) {
 }  // namespace
 
 void require_exchangeable(const Scene& scene, const matrix::ProgramFormat* format) {
+  const kernel::StandardArithmetic arithmetic;
   matrix::Factors none{patches_of(scene), {}, {}};
   std::optional<Numbers> first;
   for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
@@ -210,6 +211,7 @@ matrix::Square square_of(const matrix::ProgramFormat& format, const Scene& scene
 }
 
 table::Table table_of(const Scene& scene, const Exchange& exchange, const ViewFactorOptions& options) {
+  const kernel::StandardArithmetic arithmetic;
   using table::Strength;
   table::Head head;
   matrix::set_scene(head, scene);

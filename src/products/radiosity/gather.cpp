@@ -127,6 +127,7 @@ RowsOfChannels rows_of(const Scene& scene, const std::vector<Selection>& patches
 }  // namespace
 
 Radiosities radiosities_of(const Solution& solution) {
+  const kernel::StandardArithmetic arithmetic;
   Radiosities all = of_patches(solution.patches);
   all.claim = solution.claim;
   for (std::size_t c = 0; c < kColours.size(); ++c) {

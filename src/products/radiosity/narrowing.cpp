@@ -285,7 +285,6 @@ Hooks shifted(const Again& with) {
 void compute(const Scene& scene, const Again& again, matrix::Factors& factors,
              const std::function<void(std::size_t)>& take) {
   if (again.entries.empty()) return;
-  const kernel::StandardArithmetic arithmetic;
   const std::size_t width = factors.to.size();
   const Part part(again, factors);
   const view_factors::Pairs pairs(scene, part.patches, part.patches, again.factors);
@@ -325,7 +324,6 @@ double accuracy_for(double width) { return std::min(0.5, 4.0 * width); }
 
 Narrowed narrow(const Scene& scene, matrix::Matrix& matrix, const Options& options, jobs::Journal* journal,
                 const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
   require_width(*options.width);
   Narrowed result{std::vector<std::uint8_t>(matrix.factors.entries.size()), 0};
   const double accuracy = options.factors.accuracy;
@@ -358,6 +356,7 @@ Solution solve_within(const Scene& scene, matrix::Matrix& matrix, const Options&
 }
 
 Widest widest_bounds(const Solution& solution) {
+  const kernel::StandardArithmetic arithmetic;
   Widest widest;
   for (std::size_t c = 0; c < solution.channels.size(); ++c) {
     const std::vector<BoundedValue>& all = solution.channels[c].radiosity;

@@ -13,7 +13,7 @@
 #include "radiosity/system.h"
 #include "scene/selections.h"
 #include "table/rows.h"
-#include "text/csv_dialect.h"
+#include "text/csv_lines.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
@@ -283,6 +283,7 @@ class Conditions {
 }  // namespace
 
 ThermalConditions conditions_of(const Scene& scene, std::span<const Condition> all) {
+  const kernel::StandardArithmetic arithmetic;
   Conditions conditions(scene);
   std::vector<Problem> problems;
   for (const Condition& one : all) {
@@ -293,6 +294,7 @@ ThermalConditions conditions_of(const Scene& scene, std::span<const Condition> a
 }
 
 ThermalConditions read_conditions(const Scene& scene, const std::filesystem::path& file) {
+  const kernel::StandardArithmetic arithmetic;
   Conditions conditions(scene);
   text::CsvLines lines(file, "a CSV file with the columns patch, T, Q");
   text::CsvDialect dialect;
@@ -344,6 +346,7 @@ ThermalConditions read_conditions(const Scene& scene, const std::filesystem::pat
 // --- Files ---
 
 table::Table table_of(const Scene& scene, const Temperatures& found, const ViewFactorOptions& options) {
+  const kernel::StandardArithmetic arithmetic;
   using table::Strength;
   table::Head head;
   matrix::set_scene(head, scene);

@@ -323,6 +323,7 @@ View::View(const Camera& camera, const Size& size) : camera_(camera), size_(size
 }
 
 Ray View::ray(double column, double row) const {
+  const kernel::StandardArithmetic arithmetic;
   const double s = (2.0 * column - size_.width) / size_.height * tangent_;
   const double r = (size_.height - 2.0 * row) / size_.height * tangent_;
   if (camera_.ortho) return {moved(camera_.eye, s, right_, r, up_), forward_};

@@ -183,6 +183,7 @@ std::string words_of_measure(const Measure& measure) {
 }  // namespace
 
 std::string flags_of(const View& view) {
+  const kernel::StandardArithmetic arithmetic;
   const Camera& camera = view.camera();
   return "--eye " + words_of(camera.eye) + " --look " + words_of(camera.look) + " --up " + words_of(camera.up) +
          (camera.ortho ? " --ortho " + text::shortest(*camera.ortho) : " --fov " + text::shortest(camera.fov)) +

@@ -70,6 +70,7 @@ std::uint32_t bits_of(double value, bool whole) {
 }  // namespace
 
 std::string exr_of(const Picture& picture) {
+  const kernel::StandardArithmetic arithmetic;
   const exr::Window window{0, 0, picture.size.width, picture.size.height};
   exr::Image image{window, window, {}, picture.metadata};
   const auto add = [&](std::string name, bool whole, const double* values, std::size_t step) {

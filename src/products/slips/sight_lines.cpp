@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "kernel/float_environment.h"
 #include "kernel/numbers.h"
 #include "kernel/poll.h"
 #include "kernel/vec.h"
@@ -410,6 +411,7 @@ double piece_area(const Scene& scene, const SightLines& sight, std::uint32_t pie
 }
 
 std::vector<Overlap> overlapping_fronts(const Scene& scene, std::span<const Selection> selections) {
+  const kernel::StandardArithmetic arithmetic;
   if (selections.size() < 2) return {};
   return OverlapFinder(scene, selections).find(selections);
 }

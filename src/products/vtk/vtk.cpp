@@ -12,7 +12,6 @@
 
 #include "files/numpy.h"
 #include "files/parallel.h"
-#include "kernel/float_environment.h"
 #include "kernel/vec.h"
 #include "text/encoding.h"
 #include "text/escape.h"
@@ -532,7 +531,6 @@ void require_extension(const std::filesystem::path& file) { static_cast<void>(fo
 
 void write_faces(const Scene& scene, const std::vector<Field>& fields, const std::vector<std::string>& about,
                  const std::filesystem::path& file, const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
   const Format format = format_of(file);
   files::WholeFile cells(file);
   std::vector<std::size_t> face_of_cell;
@@ -545,7 +543,6 @@ void write_faces(const Scene& scene, const std::vector<Field>& fields, const std
 }
 
 void write(const Content& content, const std::filesystem::path& file, const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
   const Format format = format_of(file);
   files::WholeFile receivers(file), scene(scene_file(file));
   const std::vector<std::size_t> order = cell_order(content.receivers);

@@ -98,7 +98,6 @@ void Plan::add_scene(std::string scene_title, std::shared_ptr<const Scene> scene
 }
 
 std::vector<std::string> write(const StudyReport& report, const std::filesystem::path& folder, const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
   page::StagedFolder staged(folder);
   std::vector<std::string> messages;
   std::string without_gnuplot;  // why there are no figures, once that is known
@@ -127,7 +126,6 @@ std::vector<std::string> write(const StudyReport& report, const std::filesystem:
 }
 
 Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::Journal& journal, const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
   if (!plan.vtk.empty() && plan.scenes.size() != 1) {
     text::refuse("the report has " + text::counted(plan.scenes.size(), "scene") + ", and --vtk one file",
                  "a file shows the receivers of one scene", "compare each scene by itself, or leave out --vtk");
@@ -162,6 +160,7 @@ Finished finished_report(const Plan& plan, const std::filesystem::path& folder) 
 namespace exactff::study {
 
 std::vector<std::string> write_report(const Study& study, const std::filesystem::path& folder, const Hooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
   report::StudyReport report;
   report.scenes.push_back({"", study.request.scene_name, study});
   report.command_line = study.request.command_line;

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "kernel/float_environment.h"
 #include "report/report.h"
 #include "study/settings.h"
 #include "study/statistics.h"
@@ -419,7 +418,6 @@ std::vector<std::string> sweep_findings(const Study& study) {
 }
 
 std::vector<std::string> headlines(const Study& study) {
-  const kernel::StandardArithmetic arithmetic;
   std::vector<std::string> sentences = {exact_sentence(study)};
   std::ranges::move(study.settings.empty() ? named_method_sentences(study) : sweep_sentences(study),
                     std::back_inserter(sentences));

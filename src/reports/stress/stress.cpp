@@ -20,7 +20,6 @@
 #include "files/parallel.h"
 #include "files/stopwatch.h"
 #include "kernel/ball.h"
-#include "kernel/float_environment.h"
 #include "kernel/vec.h"
 #include "table/rows.h"
 #include "text/phrases.h"
@@ -272,7 +271,6 @@ bool next_is_refused(const FamilyResult& result, Method method, double reach) {
 }  // namespace
 
 Report run(const Request& request, const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
   const int threads = request.threads > 0 ? request.threads : files::usable_threads();
   Report report;
   struct ScenePlace {
@@ -504,7 +502,6 @@ std::string method_sentence(const Report& report, Method method) {
 }  // namespace
 
 std::vector<std::string> headlines(const Report& report) {
-  const kernel::StandardArithmetic arithmetic;
   std::vector<std::string> sentences = {exact_sentence(report)};
   for (Method method : kMethods) {
     if (method != Method::kExact) sentences.push_back(method_sentence(report, method));

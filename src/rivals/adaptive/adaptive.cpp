@@ -298,7 +298,6 @@ namespace {
 
 AdaptiveResult estimate(const SampledScene& solver, const Receiver& receiver, const AdaptiveInside::SourceData& source,
                         double largest_rho_b, const AdaptiveOptions& options, PatchVisibility* visibility) {
-  const kernel::StandardArithmetic arithmetic;
   check(options, largest_rho_b);
   require_of_scene(*solver.scene.scene, source.scene, "source");
   AdaptiveResult result;
@@ -317,6 +316,7 @@ AdaptiveResult estimate(const SampledScene& solver, const Receiver& receiver, co
 
 AdaptiveResult AdaptiveSolver::form_factor(const Receiver& receiver, const AdaptiveSource& source, double largest_rho_b,
                                            const AdaptiveOptions& options) const {
+  const kernel::StandardArithmetic arithmetic;
   return estimate(impl(), receiver, source.data(), largest_rho_b, options, nullptr);
 }
 

@@ -57,7 +57,6 @@ void check_tolerances(const Settings& settings) {
 
 Estimate RecursionEvaluator::estimate(const AdaptiveSource& source, const Rgb& radiosity,
                                       adaptive::PatchVisibility* visibility) {
-  const kernel::StandardArithmetic arithmetic;
   const Rgb rho = scene_.receiver_reflectance(receiver_.on);
   const double rho_b = Rgb{rho.r * radiosity.r, rho.g * radiosity.g, rho.b * radiosity.b}.largest();
   AdaptiveResult found = is_buried_ ? AdaptiveResult{}
@@ -115,6 +114,7 @@ class Adaptive : public RecursionEvaluator {
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
+    const kernel::StandardArithmetic arithmetic;
     const auto& source = own<AdaptivePrepared>(prepared);
     return estimate(source.source, source.radiosity);
   }
@@ -242,6 +242,7 @@ class Control : public RecursionEvaluator {
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
+    const kernel::StandardArithmetic arithmetic;
     const auto& source = own<ControlSource>(prepared);
     ExactVisibility visibility(scene(), receiver(), source.exact, workspace_);
     Estimate result = estimate(source.adaptive, source.radiosity, &visibility);

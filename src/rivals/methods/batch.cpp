@@ -3,6 +3,7 @@
 
 #include "exactff/methods.h"
 #include "files/parallel.h"
+#include "kernel/float_environment.h"
 #include "text/refuse.h"
 #include "whole_view/light.h"
 
@@ -64,6 +65,7 @@ void exact_form_factors(
 
 void sky_factors(const Scene& scene, const Receivers& receivers, const ExactOptions& options, const Run& run,
                  const std::function<void(std::size_t receiver, const FormFactor& result)>& take) {
+  const kernel::StandardArithmetic arithmetic;
   if (options.visible_fraction || options.gradient || options.vertices) {
     text::refuse("a visible fraction or a gradient of the sky is requested", "the sky has no area, and no vertices",
                  "leave it out, or leave out the sky");

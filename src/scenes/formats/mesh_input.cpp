@@ -17,10 +17,7 @@ constexpr std::size_t kMostIndices = std::numeric_limits<std::uint32_t>::max();
 
 std::optional<std::int64_t> whole_number(std::string_view word) {
   if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  return value;
+  return text::whole_number<std::int64_t>(word);
 }
 
 MeshInput::MeshInput(const std::filesystem::path& path, const SceneOptions& options, std::string kind,

@@ -456,16 +456,17 @@ class ObjReader {
 }  // namespace
 
 Scene formats::read_obj(std::string_view text, const fs::path& path, const SceneOptions& options) {
-  const kernel::StandardArithmetic arithmetic;
   if (text.empty()) text::refuse(path, "is empty", "there is nothing to compute with", "give a Wavefront OBJ file");
   return ObjReader(text, path, with_unit_of(text, options)).run();
 }
 
 Scene read_obj(std::istream& in, const fs::path& name, const SceneOptions& options) {
+  const kernel::StandardArithmetic arithmetic;
   return formats::read_obj(text::read_text(in, name.string(), kPurpose), name, options);
 }
 
 Scene read_obj(const fs::path& path, const SceneOptions& options) {
+  const kernel::StandardArithmetic arithmetic;
   return SceneInside::read_from(path, formats::read_obj(text::read_text_file(path, kPurpose), path, options));
 }
 

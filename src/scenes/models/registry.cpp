@@ -50,7 +50,6 @@ std::vector<const Model*> all_models() {
 }
 
 PlainScene make_plain(std::string_view text) {
-  const kernel::StandardArithmetic arithmetic;
   const Choice choice = parse(text);
   PlainScene scene = choice.recipe.make(choice.settings);
   scene.comments.insert(scene.comments.begin(), "exactff model " + choice.text());
@@ -58,10 +57,12 @@ PlainScene make_plain(std::string_view text) {
 }
 
 Scene make_scene(std::string_view text, const SceneOptions& options) {
+  const kernel::StandardArithmetic arithmetic;
   return build(make_plain(text), "@" + std::string(text), options);
 }
 
 std::string make_obj(std::string_view text, const std::string& mtl) {
+  const kernel::StandardArithmetic arithmetic;
   PlainScene scene = make_plain(text);
   if (mtl.empty()) {
     for (PlainPatch& patch : scene.patches) patch.material.clear();  // readers would miss their definition
@@ -69,7 +70,10 @@ std::string make_obj(std::string_view text, const std::string& mtl) {
   return to_obj(scene, mtl);
 }
 
-std::string make_mtl(std::string_view text) { return to_mtl(make_plain(text)); }
+std::string make_mtl(std::string_view text) {
+  const kernel::StandardArithmetic arithmetic;
+  return to_mtl(make_plain(text));
+}
 
 std::string description(const Model& model) {
   return model.name + ": " + model.summary + "\n" + text::setting_lines(model.settings);

@@ -8,7 +8,6 @@
 #include "exactff/receiver.h"
 #include "kernel/float_environment.h"
 #include "scene/scene.h"
-#include "text/csv_dialect.h"
 #include "text/csv_lines.h"
 #include "text/number_text.h"
 #include "text/text_lines.h"

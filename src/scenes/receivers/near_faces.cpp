@@ -138,6 +138,7 @@ double tolerance_of_computed_points(const Scene& scene) {
 }
 
 double face_tolerance(const Scene& scene, const Vec3& point) {
+  const kernel::StandardArithmetic arithmetic;
   constexpr double kMostOfDiameter = 1e-3;
   return std::max(tolerance_of_computed_points(scene),
                   std::min(finest_decimal(point), kMostOfDiameter * extent(scene).diameter));
@@ -318,6 +319,7 @@ NearMisses near_misses(const Scene& scene, std::span<const Receiver> receivers) 
 }
 
 std::vector<std::string> sentences(const NearMisses& misses, std::size_t receivers, std::string_view noun) {
+  const kernel::StandardArithmetic arithmetic;
   std::vector<std::string> told;
   const std::string of_all = " of " + text::counted(receivers, noun);
   if (misses.behind + misses.in_front > 0) {
@@ -367,6 +369,7 @@ double distance_from_plane(const Face& face, const Vec3& from_corner) {
 }  // namespace
 
 double relative_distance_from_face(const Scene& scene, FaceId id, const Vec3& point) {
+  const kernel::StandardArithmetic arithmetic;
   const Face& face = scene.face(id);
   if (face.rings.empty() || face.rings.front().empty()) return 0.0;
   const Vec3& first = scene.vertices()[face.rings.front().front()];

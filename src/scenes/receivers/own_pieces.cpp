@@ -6,6 +6,7 @@
 
 #include "exactff/error.h"
 #include "kernel/filter.h"
+#include "kernel/float_environment.h"
 #include "kernel/numbers.h"
 #include "kernel/vec.h"
 #include "scene/contacts.h"
@@ -196,6 +197,7 @@ FaceId one_face(const Scene& scene, const std::string& name) {
 }  // namespace
 
 std::optional<FaceId> buried_under(const Scene& scene, const Receiver& receiver) {
+  const kernel::StandardArithmetic arithmetic;
   if (receiver.on.empty() || contacts(scene).empty()) return std::nullopt;
   std::optional<FaceId> under;
   for (const FaceId id : receiver.on) {

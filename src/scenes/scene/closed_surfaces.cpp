@@ -249,9 +249,7 @@ ClosedSurfaces::ClosedSurfaces(const Scene& scene, Edges edges) {
 }
 
 const ClosedSurfaces& closed_surfaces(const Scene& scene) {
-  const SceneInside::Data& data = SceneInside::data(scene);
-  std::call_once(data.surfaces_found, [&] { data.surfaces = ClosedSurfaces(scene); });
-  return data.surfaces;
+  return SceneInside::data(scene).surfaces.made_by([&] { return ClosedSurfaces(scene); });
 }
 
 }  // namespace exactff

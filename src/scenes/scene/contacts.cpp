@@ -284,9 +284,7 @@ bool Contacts::comes_first(const Side& a, const Side& b) const {
 }
 
 const Contacts& contacts(const Scene& scene) {
-  const SceneInside::Data& data = SceneInside::data(scene);
-  std::call_once(data.contacts_found, [&] { data.contacts = Contacts(scene); });
-  return data.contacts;
+  return SceneInside::data(scene).contacts.made_by([&] { return Contacts(scene); });
 }
 
 Burial burial_of(const Scene& scene, std::span<const std::uint32_t> pieces, const Vec3& point, const Vec3& normal) {

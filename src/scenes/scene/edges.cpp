@@ -313,9 +313,7 @@ std::span<const std::uint32_t> SceneEdges::of_piece(const Piece& piece) const {
 SceneEdges::SceneEdges(const Scene& scene) { SceneEdgesBuilder(scene, *this).build(); }
 
 const SceneEdges& scene_edges(const Scene& scene) {
-  const SceneInside::Data& data = SceneInside::data(scene);
-  std::call_once(data.edges_found, [&] { data.edges = SceneEdges(scene); });
-  return data.edges;
+  return SceneInside::data(scene).edges.made_by([&] { return SceneEdges(scene); });
 }
 
 // --- Connectedness ---
@@ -427,9 +425,7 @@ double estimated(const Scene& scene) {
 }  // namespace
 
 double edges_per_silhouette(const Scene& scene) {
-  const SceneInside::Data& data = SceneInside::data(scene);
-  std::call_once(data.connectedness_found, [&] { data.edges_per_silhouette = estimated(scene); });
-  return data.edges_per_silhouette;
+  return SceneInside::data(scene).edges_per_silhouette.made_by([&] { return estimated(scene); });
 }
 
 }  // namespace exactff

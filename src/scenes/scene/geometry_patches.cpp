@@ -163,6 +163,7 @@ class PatchMaker {
 }  // namespace
 
 SceneOptions scene_options(std::string_view patches, BadFaces bad_faces) {
+  const kernel::StandardArithmetic arithmetic;
   SceneOptions options{.bad_faces = bad_faces};
   constexpr std::string_view kSmooth = "smooth:";
   if (patches.starts_with(kSmooth)) {

@@ -305,16 +305,13 @@ void Panels::add(const Scene& scene, std::vector<std::uint32_t> pieces, const st
 }
 
 const Panels& panels(const Scene& scene) {
-  const SceneInside::Data& data = SceneInside::data(scene);
-  std::call_once(data.panels_found, [&] { data.panels = Panels(scene); });
-  return data.panels;
+  return SceneInside::data(scene).panels.made_by([&] { return Panels(scene); });
 }
 
 const ShaftTree& panel_tree(const Scene& scene) {
   const Panels& all = panels(scene);
   if (all.empty()) return shaft_tree(scene);
-  const SceneInside::Data& data = SceneInside::data(scene);
-  std::call_once(data.panel_tree_built, [&] {
+  return SceneInside::data(scene).panel_tree.made_by([&] {
     std::vector<PanelId> ids;
     for (PanelId id = 0; id < all.end(); ++id) {
       if (all.is_joined(id) || all.sheet_of_piece(id) == Panels::kNoSheet) ids.push_back(id);
@@ -322,9 +319,8 @@ const ShaftTree& panel_tree(const Scene& scene) {
     std::vector<Box> boxes;
     boxes.reserve(ids.size());
     for (const PanelId id : ids) boxes.push_back(box_of(scene, all.corners(id)));
-    data.panel_tree = ShaftTree(boxes, ids);
+    return ShaftTree(boxes, ids);
   });
-  return data.panel_tree;
 }
 
 // --- Planes ---
@@ -506,9 +502,7 @@ void Planes::sort_pieces(std::size_t found) {
 }
 
 const Planes& planes(const Scene& scene) {
-  const SceneInside::Data& data = SceneInside::data(scene);
-  std::call_once(data.planes_found, [&] { data.planes = Planes(scene); });
-  return data.planes;
+  return SceneInside::data(scene).planes.made_by([&] { return Planes(scene); });
 }
 
 }  // namespace exactff

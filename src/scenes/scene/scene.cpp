@@ -279,8 +279,7 @@ std::vector<std::uint32_t> position_ids(std::span<const Vec3> vertices) {
 
 std::span<const std::uint32_t> places(const Scene& scene) {
   const SceneInside::Data& data = SceneInside::data(scene);
-  std::call_once(data.places_found, [&] { data.places = position_ids(data.vertices); });
-  return data.places;
+  return data.places.made_by([&] { return position_ids(data.vertices); });
 }
 
 std::size_t Scene::open_edge_count() const {
@@ -402,6 +401,7 @@ void add_place(const Scene& scene, const Face& face, PatchSummary& summary) {
 }  // namespace
 
 PatchSummary summarise(const Scene& scene, PatchId id) {
+  const kernel::StandardArithmetic arithmetic;
   const Patch& patch = scene.patch(id);
   std::vector<FaceId> faces = scene.faces_of({id, {}, scene.id()});
   std::ranges::sort(faces, {}, [&](FaceId face) {  // so that no digit of a sum depends on the order of faces
@@ -430,6 +430,7 @@ std::vector<PatchSummary> summarise(const Scene& scene) {
 }
 
 double total_area(const std::vector<PatchSummary>& rows) {
+  const kernel::StandardArithmetic arithmetic;
   double area = 0.0;
   for (const PatchSummary& row : rows) area = sum_of_areas(area, row.area);
   return area;

@@ -29,6 +29,21 @@ struct Texture {
   std::vector<TexturePoint> points;
 };
 
+// A part of a scene that is made at its first use, by whichever thread is first.
+template <class Part>
+class Lazy {
+ public:
+  template <class Make>
+  const Part& made_by(const Make& make) const {
+    std::call_once(once_, [&] { part_ = make(); });
+    return part_;
+  }
+
+ private:
+  mutable std::once_flag once_;
+  mutable Part part_{};
+};
+
 struct Scene::Data {
   const SceneId id = next_id();
   std::string file;                          // its name in messages
@@ -45,26 +60,17 @@ struct Scene::Data {
   std::vector<Problem> warnings;
   std::size_t warnings_of_glass = 0;  // that many come first
 
-  mutable std::once_flag places_found;  // see places()
-  mutable std::vector<std::uint32_t> places;
-  mutable std::once_flag planes_found;  // see planes()
-  mutable Planes planes;
-  mutable std::once_flag tree_built;  // the tree is built at first use: see shaft_tree()
-  mutable ShaftTree tree;
-  mutable std::once_flag panels_found;  // see panels()
-  mutable Panels panels;
-  mutable std::once_flag panel_tree_built;  // see panel_tree()
-  mutable ShaftTree panel_tree;
-  mutable std::once_flag surfaces_found;  // see closed_surfaces()
-  mutable ClosedSurfaces surfaces;
-  mutable std::once_flag contacts_found;  // see contacts()
-  mutable Contacts contacts;
-  mutable std::once_flag connectedness_found;  // see edges_per_silhouette()
-  mutable double edges_per_silhouette = 1.0;
-  mutable std::once_flag edges_found;  // see scene_edges()
-  mutable SceneEdges edges;
-  mutable std::once_flag extent_found;  // see extent()
-  mutable Extent extent;
+  // Parts that follow from the others. The functions beside them make them at the first use.
+  Lazy<std::vector<std::uint32_t>> places;  // places(), scene.cpp: vertices at one position
+  Lazy<Planes> planes;                      // planes(), panels.cpp: which pieces lie in one plane
+  Lazy<ShaftTree> tree;                     // shaft_tree(): the boxes of pieces
+  Lazy<Panels> panels;                      // panels(): neighbours in one plane, joined
+  Lazy<ShaftTree> panel_tree;               // panel_tree(), panels.cpp: the boxes of panels
+  Lazy<ClosedSurfaces> surfaces;            // closed_surfaces(): what edges join without a gap
+  Lazy<Contacts> contacts;                  // contacts(): overlaps in one plane
+  Lazy<SceneEdges> edges;                   // scene_edges(): the tree of edges
+  Lazy<double> edges_per_silhouette;        // edges_per_silhouette(), edges.cpp: an estimate
+  Lazy<Extent> extent;                      // extent(), shaft_tree.cpp: lengths of the order of the scene's
 
  private:
   static SceneId next_id();

@@ -37,7 +37,10 @@ int tenths_of_millimetres(Unit unit) { return std::ranges::find(kUnits, unit, &U
 
 std::string_view name_of(Unit unit) { return std::ranges::find(kUnits, unit, &UnitRow::unit)->name; }
 
-double metres(Unit unit) { return unit == Unit::kNone ? 1.0 : tenths_of_millimetres(unit) / 1e4; }
+double metres(Unit unit) {
+  const kernel::StandardArithmetic arithmetic;
+  return unit == Unit::kNone ? 1.0 : tenths_of_millimetres(unit) / 1e4;
+}
 
 Unit unit_named(std::string_view text) {
   const auto* const found = std::ranges::find(kUnits, text, &UnitRow::name);

@@ -215,6 +215,7 @@ Scene Scene::with_flipped(std::span<const Selection> selections) const {
 }
 
 Scene Scene::with_transparent(std::span<const Selection> selections) const {
+  const kernel::StandardArithmetic arithmetic;
   auto copy = copy_of(data());
   for (const FaceId id : exactff::faces_of(*this, selections)) {
     Face& face = copy->faces[index_of(id)];

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "kernel/float_environment.h"
 #include "kernel/lanes.h"
 #include "kernel/vec.h"
 #include "scene/scene.h"
@@ -159,14 +158,12 @@ Box box_of(const Scene& scene, std::span<const std::uint32_t> corners) {
 }
 
 const ShaftTree& shaft_tree(const Scene& scene) {
-  const SceneInside::Data& data = SceneInside::data(scene);
-  std::call_once(data.tree_built, [&] {
+  return SceneInside::data(scene).tree.made_by([&] {
     std::vector<Box> boxes;
     boxes.reserve(scene.pieces().size());
     for (const Piece& piece : scene.pieces()) boxes.push_back(box_of(scene, scene.corners(piece)));
-    data.tree = ShaftTree(boxes);
+    return ShaftTree(boxes);
   });
-  return data.tree;
 }
 
 // --- Extent ---
@@ -174,7 +171,6 @@ const ShaftTree& shaft_tree(const Scene& scene) {
 namespace {
 
 Extent extent_of(const Scene& scene) {
-  const kernel::StandardArithmetic arithmetic;
   Extent extent;
   const auto for_each_corner = [&](const auto& take) {
     for (const Piece& piece : scene.pieces()) {
@@ -194,9 +190,7 @@ Extent extent_of(const Scene& scene) {
 }  // namespace
 
 const Extent& extent(const Scene& scene) {
-  const SceneInside::Data& data = SceneInside::data(scene);
-  std::call_once(data.extent_found, [&] { data.extent = extent_of(scene); });
-  return data.extent;
+  return SceneInside::data(scene).extent.made_by([&] { return extent_of(scene); });
 }
 
 }  // namespace exactff

@@ -13,25 +13,15 @@ namespace exactff::contour {
 
 using kernel::ExactVec3;
 using kernel::Integer;
+using kernel::ratio;
 using kernel::Rational;
 using kernel::RationalVec3;
 using kernel::sign;
 using kernel::to_ball;
 using kernel::to_rational;
 using visibility::BoundaryPiece;
-using visibility::EdgeParameter;
 
 ContourIntegral::ContourIntegral(ExactVec3 normal) : normal_(std::move(normal)) {}
-
-namespace {
-
-ExactVec3 point_at(const BoundaryPiece& piece, const EdgeParameter& t) {
-  if (sign(t.m) == 0 && t.l == 1) return piece.a;
-  if (sign(t.l) == 0 && t.m == 1) return piece.b;
-  return piece.a * t.l + piece.b * t.m;
-}
-
-}  // namespace
 
 void ContourIntegral::add(const BoundaryPiece& piece) {
   const ExactVec3 a_cross_b = cross(piece.a, piece.b);
@@ -41,7 +31,7 @@ void ContourIntegral::add(const BoundaryPiece& piece) {
   const Integer normal_dot = dot(normal_, a_cross_b);
   if (sign(normal_dot) == 0) return;  // the normal lies in the plane of the edge and x: the term is 0
   terms_.push_back({dot(a_cross_b, a_cross_b), sign(w) > 0 ? normal_dot : Integer(-normal_dot), abs(w),
-                    dot(point_at(piece, piece.begin), point_at(piece, piece.end))});
+                    dot(piece.from(), piece.to())});
 }
 
 // Eq. (4), in the notation of contour.h.
@@ -61,12 +51,6 @@ Ball ContourIntegral::evaluate(long bits) const {
 // --- Terms ---
 
 namespace {
-
-Rational ratio(const Integer& numerator, const Integer& denominator) {
-  Rational result(numerator, denominator);
-  result.canonicalize();
-  return result;
-}
 
 // (w . n) k . (w x g) times |C| for the direction p of w.
 Rational end_term(const ExactVec3& p, const ExactVec3& n, const ExactVec3& c, const RationalVec3& g) {

@@ -34,10 +34,8 @@ void MeasureIntegral::start(const Vec3& n) {
 }
 
 void MeasureIntegral::add(const visibility::BoundaryPiece& piece) {
-  const auto point = [&](const visibility::EdgeParameter& t) { return piece.a * t.l + piece.b * t.m; };
-  const ExactVec3 p = point(piece.begin), q = point(piece.end);
-  if (kind_ != MeasureTerms::kTilted) return add(p, q);
-  add_above(p, q);
+  if (kind_ != MeasureTerms::kTilted) return add(piece.from(), piece.to());
+  add_above(piece.from(), piece.to());
 }
 
 // Only what is above z's horizon.

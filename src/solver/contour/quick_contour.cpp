@@ -15,84 +15,13 @@
 #include <limits>
 
 #include "contour/quick_lanes.h"
-#include "kernel/ball.h"
 #include "kernel/vec.h"
 
 namespace exactff::contour {
 
-using namespace kernel::double_double;
-
-// --- Constants ---
-
-namespace {
-
-constexpr long kBits = 160;
-
-// The relative error is at most 2^-106: two roundings to nearest.
-DoubleDouble rounded(const Ball& ball) {
-  const double hi = kernel::nearest_to_midpoint(ball);
-  return {hi, kernel::nearest_to_midpoint(ball - kernel::to_ball(hi, kBits))};
-}
-
-AngleConstants compute_constants() {
-  AngleConstants result;
-  for (int k = 0; k <= kAtanSteps; ++k) {
-    result.atan[k] = rounded(atan(kernel::to_ball(static_cast<double>(k) / kAtanSteps, kBits)));
-  }
-  result.pi = rounded(kernel::pi(kBits));
-  result.half_pi = {0.5 * result.pi.hi, 0.5 * result.pi.lo};
-  return result;
-}
-
-}  // namespace
-
-const AngleConstants& angle_constants() {
-  static const AngleConstants instance = compute_constants();
-  return instance;
-}
-
 // --- Four at a time ---
 
 namespace {
-
-// --- Edges ---
-
-struct FourLines {
-  FourMask reversed;
-  FourVector a;
-  FourVector b;
-  FourVector along;
-  FourVector cross;
-  FourBounded size;
-  FourBounded weight;
-};
-
-EXACTFF_INLINE QuickLine line_of(const FourLines& lines, std::size_t k) {
-  return {lines.reversed[k] != 0, lane(lines.a, k),    lane(lines.b, k),     lane(lines.along, k),
-          lane(lines.cross, k),   lane(lines.size, k), lane(lines.weight, k)};
-}
-
-// Step 1.
-EXACTFF_INLINE FourLines lines_between(const FourVector& normal, const FourVector& p, const FourVector& q) {
-  FourLines lines;
-  lines.reversed = q.norm < p.norm;
-  lines.a = where(lines.reversed, q, p);
-  lines.b = where(lines.reversed, p, q);
-  lines.along = difference(lines.b, lines.a);
-  lines.cross = cross(lines.a, lines.along);
-  const FourMask usable = both(has_moderate_size(p), has_moderate_size(q));
-  lines.cross.error = where(usable, lines.cross.error, uniform<Four>(kDeclined.error));
-  lines.size = square_root(dot(lines.cross, lines.cross));
-  lines.weight = dot(normal, lines.cross) / lines.size;
-  return lines;
-}
-
-// The corner at one end of each of up to four edges.
-EXACTFF_INLINE FourVector gather_ends(std::span<const QuickCorner> corners, const FourOf<QuickEdge>& edges,
-                                      std::uint32_t QuickEdge::*end) {
-  return gather(FourOf<QuickCorner>{&corners[edges[0]->*end], &corners[edges[1]->*end], &corners[edges[2]->*end],
-                                    &corners[edges[3]->*end]});
-}
 
 EXACTFF_CLONES
 void lines_of(const std::array<double, 3>& normal, std::span<const QuickCorner> corners,
@@ -100,10 +29,12 @@ void lines_of(const std::array<double, 3>& normal, std::span<const QuickCorner> 
   const FourVector n = vector_of<Four>(normal);
   for (std::size_t i = 0; i < edges.size(); i += kLanes) {
     const std::size_t count = std::min(kLanes, edges.size() - i);
-    const FourOf<QuickEdge> edge = four_of(edges.subspan(i, count));
-    const FourLines lines =
-        lines_between(n, gather_ends(corners, edge, &QuickEdge::a), gather_ends(corners, edge, &QuickEdge::b));
-    for (std::size_t k = 0; k < count; ++k) result[i + k] = line_of(lines, k);
+    const auto [reversed, a, b, along, c] = spans_of(corners, edges.subspan(i, count));
+    const FourBounded size = square_root(dot(c, c)), weight = dot(n, c) / size;
+    for (std::size_t k = 0; k < count; ++k) {
+      result[i + k] = {reversed[k] != 0, lane(a, k),    lane(b, k),     lane(along, k),
+                       lane(c, k),       lane(size, k), lane(weight, k)};
+    }
   }
 }
 
@@ -113,19 +44,16 @@ void lines_of(const std::array<double, 3>& normal, std::span<const QuickCorner> 
 EXACTFF_INLINE FourBounded terms(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines,
                                  const AngleConstants& known) {
   const FourOf<QuickPiece> piece = four_of(pieces);
-  const FourOf<QuickLine> line = {&lines[piece[0]->edge], &lines[piece[1]->edge], &lines[piece[2]->edge],
-                                  &lines[piece[3]->edge]};
-  const FourVector a = gather(line, &QuickLine::a), along = gather(line, &QuickLine::along);
-  const FourEdges edges{line, a, along};
+  const FourEdges edges = edges_of(piece, lines);
   // 2. p, q and w.
   const FourPoints p = locate(edges, piece, &QuickPiece::begin, lines);
   const FourPoints q = locate(edges, piece, &QuickPiece::end, lines);
   const FourBounded w = sum_of_products(p.s, q.m, -p.m, q.s);
   // 3. The angle.
-  const FourBounded angle = atan2(w * gather(line, &QuickLine::size), dot(p.direction, q.direction), known);
+  const FourBounded angle = atan2(w * gather(edges.line, &QuickLine::size), dot(p.direction, q.direction), known);
   // 4. Its product with n . (a x b) / |a x b|.
   const FourMask present = FourMask{0, 1, 2, 3} < static_cast<std::int64_t>(pieces.size());
-  return where(present, angle * gather(line, &QuickLine::weight), FourBounded{});
+  return where(present, angle * gather(edges.line, &QuickLine::weight), FourBounded{});
 }
 
 EXACTFF_CLONES
@@ -179,10 +107,7 @@ QuickContour::Value QuickContour::value() const { return value((sums_[0] + sums_
 
 QuickContour::Value QuickContour::value(const Bounded& sum) const {
   const Vector normal = vector_of<double>(normal_);
-  const Bounded f = -sum / (square_root(dot(normal, normal)) * (2.0 * constant(angle_constants().pi)));
-  const double error = kInflation * f.error;
-  if (!std::isfinite(f.hi) || !std::isfinite(f.lo) || !std::isfinite(error)) return {0.0, 0.0, kDeclined.error};
-  return {f.hi, f.lo, error};
+  return value_of(-sum / (square_root(dot(normal, normal)) * (2.0 * constant(angle_constants().pi))));
 }
 
 QuickContour::Value value_of(const Bounded& x) {
@@ -306,11 +231,7 @@ QuickCorner lifted(const QuickCorner& direction, const std::array<Bounded, 3>& n
   return result;
 }
 
-QuickGradient::QuickGradient(const Vec3& normal) {
-  int exponent = 0;
-  std::frexp(kernel::max_norm(normal), &exponent);
-  normal_ = {std::ldexp(normal.x, -exponent), std::ldexp(normal.y, -exponent), std::ldexp(normal.z, -exponent)};
-}
+QuickGradient::QuickGradient(const Vec3& normal) : normal_(scaled_normal(normal)) {}
 
 namespace {
 
@@ -320,16 +241,7 @@ void gradient_lines_of(const std::array<double, 3>& normal, std::span<const Quic
   const FourVector n = vector_of<Four>(normal);
   for (std::size_t i = 0; i < edges.size(); i += kLanes) {
     const std::size_t count = std::min(kLanes, edges.size() - i);
-    const FourOf<QuickEdge> edge = four_of(edges.subspan(i, count));
-    const auto ends = [&](std::uint32_t QuickEdge::*end) __attribute__((always_inline)) {
-      return gather(FourOf<QuickCorner>{&corners[edge[0]->*end], &corners[edge[1]->*end], &corners[edge[2]->*end],
-                                        &corners[edge[3]->*end]});
-    };
-    const FourVector p = ends(&QuickEdge::a), q = ends(&QuickEdge::b);
-    const FourMask reversed = q.norm < p.norm;
-    const FourVector a = where(reversed, q, p), b = where(reversed, p, q), d = difference(b, a);
-    FourVector c = cross(a, d);
-    c.error = where(both(has_moderate_size(p), has_moderate_size(q)), c.error, uniform<Four>(kDeclined.error));
+    const auto [reversed, a, b, d, c] = spans_of(corners, edges.subspan(i, count));
     const FourBounded squared = dot(c, c), size = square_root(squared);
     const FourBounded inverse = FourBounded{uniform<Four>(1.0), {}, {}} / size;
     const FourBounded growth = dot(cross(n, d), c) * inverse / squared;
@@ -348,30 +260,16 @@ struct FourEnds {
   FourBounded psi;
 };
 
-EXACTFF_INLINE FourEnds ends_of(const FourOf<Line>& line, const FourVector& n, const FourOf<QuickPiece>& pieces,
+EXACTFF_INLINE FourEnds ends_of(const FourEdges<Line>& edges, const FourVector& n, const FourOf<QuickPiece>& pieces,
                                 std::uint32_t QuickPiece::*which, std::span<const Line> lines) {
-  FourOf<Line> crossing = line;  // the default: a line does not cross itself, so this declines
-  FourMask at_a{}, at_b{};
-  for (std::size_t k = 0; k < kLanes; ++k) {
-    const std::uint32_t end = pieces[k]->*which;
-    const std::uint32_t end_at_a = line[k]->reversed ? QuickPiece::kAtB : QuickPiece::kAtA;
-    at_a[k] = end == end_at_a ? -1 : 0;
-    at_b[k] = end >= QuickPiece::kAtA && end != end_at_a ? -1 : 0;
-    if (end < QuickPiece::kAtA) crossing[k] = &lines[end];
-  }
-  const FourMask at_corner = either(at_a, at_b);
-  const FourVector a = gather(line, &Line::a);
-  FourEnds corner;
+  const FourPoints point = locate(edges, pieces, which, lines);
+  const FourMask at_corner = either(point.at_a, point.at_b);
+  FourBounded psi;
   if (in_some_lane(at_corner)) {
-    const FourBounded zero{}, one{uniform<Four>(1.0), {}, {}};
-    corner = {{one, where(at_b, one, zero), where(at_b, gather(line, &Line::b), a)},
-              where(at_b, gather(line, &Line::psi_b), gather(line, &Line::psi_a))};
-    if (in_every_lane(at_corner)) return corner;
+    psi = where(point.at_b, gather(edges.line, &Line::psi_b), gather(edges.line, &Line::psi_a));
+    if (in_every_lane(at_corner)) return {point, psi};
   }
-  const FourPoints found =
-      cross_edges(gather(crossing, &Line::cross), gather(crossing, &Line::a), a, gather(line, &Line::along));
-  return {where(at_corner, corner.point, found),
-          where(at_corner, corner.psi, psi_of(found.direction, n, gather(line, &Line::along)))};
+  return {point, where(at_corner, psi, psi_of(point.direction, n, edges.along))};
 }
 
 struct FourArcs {
@@ -386,12 +284,12 @@ EXACTFF_INLINE FourArcs arcs_at(const FourVector& n, std::span<const QuickPiece>
                                 const AngleConstants& known) {
   const std::size_t count = std::min(kLanes, pieces.size());
   const FourOf<QuickPiece> piece = four_of(pieces.first(count));
-  const FourOf<Line> line = {&lines[piece[0]->edge], &lines[piece[1]->edge], &lines[piece[2]->edge],
-                             &lines[piece[3]->edge]};
-  const FourEnds p = ends_of(line, n, piece, &QuickPiece::begin, lines);
-  const FourEnds q = ends_of(line, n, piece, &QuickPiece::end, lines);
+  const FourEdges edges = edges_of(piece, lines);
+  const FourEnds p = ends_of(edges, n, piece, &QuickPiece::begin, lines);
+  const FourEnds q = ends_of(edges, n, piece, &QuickPiece::end, lines);
   const FourBounded w = sum_of_products(p.point.s, q.point.m, -p.point.m, q.point.s);
-  return {count, line, p, q, atan2(w * gather(line, &Line::size), dot(p.point.direction, q.point.direction), known)};
+  return {count, edges.line, p, q,
+          atan2(w * gather(edges.line, &Line::size), dot(p.point.direction, q.point.direction), known)};
 }
 
 using FourSums = std::array<FourBounded, 3>;

@@ -17,13 +17,15 @@
 #include <cstdint>
 #include <span>
 
-#include "contour/quick_arithmetic.h"
 #include "exactff/geometry.h"
-#include "kernel/double_double.h"
+#include "kernel/bounded_vectors.h"
 #include "kernel/filter.h"
 #include "kernel/numbers.h"
 
 namespace exactff::contour {
+
+using namespace kernel::double_double;
+using kernel::double_double::where;  // beside those of this room
 
 using QuickCorner = kernel::FineDirection;
 
@@ -44,10 +46,10 @@ struct QuickLine {
   bool reversed = false;  // a and b were exchanged, so that a is the nearer one
   Vector a;
   Vector b;
-  Vector along;                           // b - a
-  Vector cross;                           // a x b
-  kernel::double_double::Bounded size;    // |a x b|
-  kernel::double_double::Bounded weight;  // n . (a x b) / |a x b|
+  Vector along;    // b - a
+  Vector cross;    // a x b
+  Bounded size;    // |a x b|
+  Bounded weight;  // n . (a x b) / |a x b|
 };
 
 // A piece of an edge between two points: ends of the edge, or points where the plane through x and another edge crosses
@@ -72,8 +74,7 @@ class QuickContour {
   void add(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines);
 
   // The term of each piece instead, to be added by the caller; `terms` has the same length as `pieces`.
-  void find_terms(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines,
-                  std::span<kernel::double_double::Bounded> terms) const;
+  void find_terms(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines, std::span<Bounded> terms) const;
 
   // |F - (hi + lo)| <= error for the closed loops added so far, where hi is the double nearest to hi + lo. The error is
   // infinite if a piece was declined: a and b, c and d, or p and q are too close to one line with x, a crossing is too
@@ -85,12 +86,12 @@ class QuickContour {
   };
   [[nodiscard]] Value value() const;
   // The same for a sum of terms.
-  [[nodiscard]] Value value(const kernel::double_double::Bounded& sum) const;
+  [[nodiscard]] Value value(const Bounded& sum) const;
 
  private:
   std::array<double, 3> normal_{};  // largest component in [1/2, 1)
   // Sums of the terms of the pieces, without the factor -1/(2 pi |n|): lane k has the k-th of every four.
-  std::array<kernel::double_double::Bounded, 4> sums_;
+  std::array<Bounded, 4> sums_;
 };
 
 // --- Quick gradient ---
@@ -111,21 +112,20 @@ class QuickContour {
 
 // A corner at which the line of a direction meets the plane { y : normal . y = offset }, offset > 0. The error is
 // infinite if that is declined.
-QuickCorner lifted(const QuickCorner& direction, const std::array<kernel::double_double::Bounded, 3>& normal,
-                   const kernel::double_double::Bounded& offset);
+QuickCorner lifted(const QuickCorner& direction, const std::array<Bounded, 3>& normal, const Bounded& offset);
 
 // x 2^exponent; declined where that is not certain to be exact.
-[[nodiscard]] kernel::double_double::Bounded times_power(const kernel::double_double::Bounded& x, int exponent);
+[[nodiscard]] Bounded times_power(const Bounded& x, int exponent);
 
 class QuickGradient {
  public:
   struct Line {
     bool reversed = false;
     Vector a, b, along, cross;
-    kernel::double_double::Bounded size;          // |C|
-    kernel::double_double::Bounded inverse;       // 1 / |C|
-    kernel::double_double::Bounded growth;        // A / |C|
-    kernel::double_double::Bounded psi_a, psi_b;  // of the ends
+    Bounded size;          // |C|
+    Bounded inverse;       // 1 / |C|
+    Bounded growth;        // A / |C|
+    Bounded psi_a, psi_b;  // of the ends
   };
 
   QuickGradient() = default;
@@ -140,11 +140,11 @@ class QuickGradient {
 
   // What a piece adds to the derivatives by the points a and b of its line is cross times these, over 2 pi |n| and
   // times 2^exponent. They are the sums of contour.h for the shares g_a = b x C / |C|^2 and g_b = C x a / |C|^2 of the
-  // points (gradient/vertex_motions.h), which add up to g:
+  // points (gradient/sight_lines.h), which add up to g:
   //   a: theta (n x b) . C / |C|^3 + (psi(q) - psi(p)) / |C|^2 with psi(w) = (w . n) (w . b) / w . w,
   //   b: the same with a for b, negated.
   struct Shares {
-    kernel::double_double::Bounded a, b;
+    Bounded a, b;
   };
   void find_shares(std::span<const QuickPiece> pieces, std::span<const Line> lines, std::span<Shares> shares) const;
 
@@ -155,11 +155,11 @@ class QuickGradient {
   // F = n . V / |n|.
   [[nodiscard]] Value form_factor() const;
   // A sum of such parts, over 2 pi |n|.
-  [[nodiscard]] Value over_turn_and_length(const kernel::double_double::Bounded& sum) const;
+  [[nodiscard]] Value over_turn_and_length(const Bounded& sum) const;
 
  private:
   std::array<double, 3> normal_{};  // largest component in [1/2, 1)
-  std::array<kernel::double_double::Bounded, 3> position_{}, v_{};
+  std::array<Bounded, 3> position_{}, v_{};
 };
 
 }  // namespace exactff::contour

@@ -11,13 +11,6 @@
 
 namespace exactff::contour {
 
-using kernel::double_double::FourMask;
-using kernel::double_double::in_every_lane;
-using kernel::double_double::in_some_lane;
-using kernel::double_double::larger;
-using kernel::double_double::only_where;
-using kernel::double_double::sign_is_certain;
-
 // Divided by a power of two, so that the largest component is in [1/2, 1).
 [[nodiscard]] std::array<double, 3> scaled_normal(const Vec3& n);
 // With the error inflated; infinite unless all of it is finite.
@@ -85,10 +78,13 @@ struct FourPoints {
   FourBounded s;
   FourBounded m;
   FourVector direction;
+  FourMask at_a{}, at_b{};  // it is that end of the edge
 };
 
+// The ends are those of p.
 EXACTFF_INLINE FourPoints where(const FourMask& condition, const FourPoints& p, const FourPoints& q) {
-  return {where(condition, p.s, q.s), where(condition, p.m, q.m), where(condition, p.direction, q.direction)};
+  return {where(condition, p.s, q.s), where(condition, p.m, q.m), where(condition, p.direction, q.direction), p.at_a,
+          p.at_b};
 }
 
 // normal . p, where `normal` is that of a plane through c. normal . (p - t c) loses less accuracy if p and t c are near
@@ -126,34 +122,69 @@ EXACTFF_INLINE FourPoints cross_edges(const FourVector& normal, const FourVector
   return {s, m, combination(s, a, m, d)};
 }
 
+// Step 1 of quick_contour.cpp for four edges: the ends, d and a x d.
+struct FourSpans {
+  FourMask reversed;
+  FourVector a, b, along, cross;
+};
+
+// Of up to four edges.
+EXACTFF_INLINE FourSpans spans_of(std::span<const QuickCorner> corners, std::span<const QuickEdge> edges) {
+  const FourOf<QuickEdge> edge = four_of(edges);
+  const auto ends = [&](std::uint32_t QuickEdge::*end) __attribute__((always_inline)) {
+    return gather(FourOf<QuickCorner>{&corners[edge[0]->*end], &corners[edge[1]->*end], &corners[edge[2]->*end],
+                                      &corners[edge[3]->*end]});
+  };
+  const FourVector p = ends(&QuickEdge::a), q = ends(&QuickEdge::b);
+  FourSpans result;
+  result.reversed = q.norm < p.norm;
+  result.a = where(result.reversed, q, p);
+  result.b = where(result.reversed, p, q);
+  result.along = difference(result.b, result.a);
+  result.cross = cross(result.a, result.along);
+  const FourMask usable = both(has_moderate_size(p), has_moderate_size(q));
+  result.cross.error = where(usable, result.cross.error, uniform<Four>(kDeclined.error));
+  return result;
+}
+
 // The edges of four pieces.
+template <class Line>
 struct FourEdges {
-  FourOf<QuickLine> line;
+  FourOf<Line> line;
   FourVector a;
   FourVector along;
 };
 
+template <class Line>
+EXACTFF_INLINE FourEdges<Line> edges_of(const FourOf<QuickPiece>& piece, std::span<const Line> lines) {
+  const FourOf<Line> line = {&lines[piece[0]->edge], &lines[piece[1]->edge], &lines[piece[2]->edge],
+                             &lines[piece[3]->edge]};
+  return {line, gather(line, &Line::a), gather(line, &Line::along)};
+}
+
 // Step 2 of quick_contour.cpp, for one end of four pieces.
-EXACTFF_INLINE FourPoints locate(const FourEdges& edges, const FourOf<QuickPiece>& pieces,
-                                 std::uint32_t QuickPiece::*which, std::span<const QuickLine> lines) {
-  FourOf<QuickLine> crossing = edges.line;  // the default: a line does not cross itself, so this declines
-  FourMask at_a{}, at_b{};
+template <class Line>
+EXACTFF_INLINE FourPoints locate(const FourEdges<Line>& edges, const FourOf<QuickPiece>& pieces,
+                                 std::uint32_t QuickPiece::*which, std::span<const Line> lines) {
+  FourOf<Line> crossing = edges.line;  // the default: a line does not cross itself, so this declines
+  FourPoints corner;
   for (std::size_t k = 0; k < kLanes; ++k) {
     const std::uint32_t end = pieces[k]->*which;
     const std::uint32_t end_at_a = edges.line[k]->reversed ? QuickPiece::kAtB : QuickPiece::kAtA;
-    at_a[k] = end == end_at_a ? -1 : 0;
-    at_b[k] = end >= QuickPiece::kAtA && end != end_at_a ? -1 : 0;
+    corner.at_a[k] = end == end_at_a ? -1 : 0;
+    corner.at_b[k] = end >= QuickPiece::kAtA && end != end_at_a ? -1 : 0;
     if (end < QuickPiece::kAtA) crossing[k] = &lines[end];
   }
-  const FourMask at_corner = either(at_a, at_b);
-  FourPoints corner;
+  const FourMask at_b = corner.at_b, at_corner = either(corner.at_a, at_b);
   if (in_some_lane(at_corner)) {
     const FourBounded zero{}, one{uniform<Four>(1.0), {}, {}};
-    corner = {one, where(at_b, one, zero), where(at_b, gather(edges.line, &QuickLine::b), edges.a)};
+    corner.s = one;
+    corner.m = where(at_b, one, zero);
+    corner.direction = where(at_b, gather(edges.line, &Line::b), edges.a);
     if (in_every_lane(at_corner)) return corner;
   }
   return where(at_corner, corner,
-               cross_edges(gather(crossing, &QuickLine::cross), gather(crossing, &QuickLine::a), edges.a, edges.along));
+               cross_edges(gather(crossing, &Line::cross), gather(crossing, &Line::a), edges.a, edges.along));
 }
 
 }  // namespace exactff::contour

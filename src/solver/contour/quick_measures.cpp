@@ -13,9 +13,6 @@
 
 namespace exactff::contour {
 
-using namespace kernel::double_double;
-using contour::where;
-
 namespace {
 
 // --- Frame ---
@@ -98,13 +95,10 @@ struct FourPieces {
 // Step 1.
 EXACTFF_INLINE FourPieces located(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines) {
   const FourOf<QuickPiece> piece = four_of(pieces);
-  const FourOf<QuickLine> line = {&lines[piece[0]->edge], &lines[piece[1]->edge], &lines[piece[2]->edge],
-                                  &lines[piece[3]->edge]};
-  const FourVector a = gather(line, &QuickLine::a), along = gather(line, &QuickLine::along);
-  const FourEdges edges{line, a, along};
+  const FourEdges edges = edges_of(piece, lines);
   const FourPoints p = locate(edges, piece, &QuickPiece::begin, lines);
   const FourPoints q = locate(edges, piece, &QuickPiece::end, lines);
-  return {line, p, q, sum_of_products(p.s, q.m, -p.m, q.s)};
+  return {edges.line, p, q, sum_of_products(p.s, q.m, -p.m, q.s)};
 }
 
 // Step 2, for one end: whether it is certainly above z's horizon, or certainly not.

@@ -6,8 +6,8 @@
 // each with an error of about 2^-100 of the angle under which x sees the edge. theta and fan take the sign of w: the
 // sums are odd in C. Hence, as for Eq. (4), the measure is rounded correctly unless its terms cancel by some 45 bits.
 // Nothing else is proved here than in double_double.h: every operation counts its own error and those that it inherits.
-// atan2 is that of the exact arguments, within the bound, wherever it does not decline (quick_arithmetic.h), and the
-// branch is right for the exact arguments (measures.h).
+// atan2 is that of the exact arguments, within the bound, wherever it does not decline (kernel/bounded_vectors.h), and
+// the branch is right for the exact arguments (measures.h).
 //
 // Beside z's horizon, a piece is cut or left out only if the signs of z . p and z . q are certain, or the number is
 // known to be 0: p is an end of the edge without an error, and each of its components or z's is 0. Otherwise
@@ -28,13 +28,13 @@ namespace exactff::contour {
 struct QuickMeasureFrame {
   MeasureTerms terms = MeasureTerms::kSolidAngle;
   Vector n, z;
-  kernel::double_double::Bounded length_n, length_z;
-  kernel::double_double::Bounded normal_up;  // n . z
-  Vector middle;                             // m
-  Vector closing;                            // m x z
-  kernel::double_double::Bounded closing_k;  // n . z / |z|
-  kernel::double_double::Bounded inverse_z;  // 1 / |z|
-  std::array<bool, 3> up_is_zero{};          // by component
+  Bounded length_n, length_z;
+  Bounded normal_up;                 // n . z
+  Vector middle;                     // m
+  Vector closing;                    // m x z
+  Bounded closing_k;                 // n . z / |z|
+  Bounded inverse_z;                 // 1 / |z|
+  std::array<bool, 3> up_is_zero{};  // by component
 };
 
 class QuickMeasure {
@@ -48,11 +48,10 @@ class QuickMeasure {
   // The term of each piece, to be added by the caller; `lines` must have been made by a QuickContour with the same
   // normal. A term is exactly 0 with an error of 0 if and only if nothing of the piece counts; it has an infinite error
   // if it was declined.
-  void find_terms(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines,
-                  std::span<kernel::double_double::Bounded> terms) const;
+  void find_terms(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines, std::span<Bounded> terms) const;
 
   // As QuickContour::value, for a sum of terms.
-  [[nodiscard]] QuickContour::Value value(const kernel::double_double::Bounded& sum) const;
+  [[nodiscard]] QuickContour::Value value(const Bounded& sum) const;
 
  private:
   Measure measure_;

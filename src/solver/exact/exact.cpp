@@ -7,14 +7,15 @@
 #include <stdexcept>
 #include <vector>
 
+#include "exact/region.h"
 #include "exact/source_planes.h"
-#include "exact/workspace.h"
 #include "exactff/region.h"
 #include "kernel/float_environment.h"
 #include "kernel/numbers.h"
 #include "kernel/vec.h"
 #include "receivers/own_pieces.h"
 #include "scene/scene.h"
+#include "text/refuse.h"
 #include "visibility/boolean_walk.h"
 
 namespace exactff {
@@ -43,29 +44,25 @@ void check_receiver(const Receiver& receiver, const Measure& measure) {
   const Vec3 normal = measure.sphere ? Vec3{0.0, 0.0, 1.0} : receiver.normal;  // a sphere's does not matter
   for (const Vec3& v : {receiver.point, normal}) {
     if (kernel::is_finite(v)) continue;
-    throw InputError({.what = "the receiver's point or normal is not finite",
-                      .why = "a form factor needs a point and a direction",
-                      .suggestion = "give three finite numbers for each"});
+    text::refuse("the receiver's point or normal is not finite", "a form factor needs a point and a direction",
+                 "give three finite numbers for each");
   }
   if (normal == Vec3{}) {
-    throw InputError({.what = "the receiver's normal is (0, 0, 0)",
-                      .why = "it has no direction, so the horizon is not defined",
-                      .suggestion = "give a normal of any length other than zero"});
+    text::refuse("the receiver's normal is (0, 0, 0)", "it has no direction, so the horizon is not defined",
+                 "give a normal of any length other than zero");
   }
 }
 
 void check_precision_cap(int cap) {
   if (cap >= 1) return;
-  throw InputError({.what = "the precision cap is " + std::to_string(cap) + " bits",
-                    .why = "a ball (interval) needs at least one bit",
-                    .suggestion = "give a cap of at least 1; the default is 65536"});
+  text::refuse("the precision cap is " + std::to_string(cap) + " bits", "a ball (interval) needs at least one bit",
+               "give a cap of at least 1; the default is 65536");
 }
 
 void check_direction(const Vec3& along) {
   if (kernel::is_finite(along) && !(along == Vec3{})) return;
-  throw InputError({.what = "the direction of the movement is zero or not finite",
-                    .why = "a derivative along it is not defined",
-                    .suggestion = "give three finite numbers that are not all 0"});
+  text::refuse("the direction of the movement is zero or not finite", "a derivative along it is not defined",
+               "give three finite numbers that are not all 0");
 }
 
 }  // namespace
@@ -75,14 +72,12 @@ namespace exact {
 void check_measure(const Measure& measure) {
   if (measure.kind != MeasureKind::kOvercast) return;
   if (!kernel::is_finite(measure.up) || measure.up == Vec3{}) {
-    throw InputError({.what = "the direction upwards is zero or not finite",
-                      .why = "an overcast sky is brightest there",
-                      .suggestion = "give three finite numbers that are not all 0"});
+    text::refuse("the direction upwards is zero or not finite", "an overcast sky is brightest there",
+                 "give three finite numbers that are not all 0");
   }
   if (!measure.sphere) return;
-  throw InputError({.what = "the overcast sky of a sphere is requested",
-                    .why = "illuminance needs a surface with a normal",
-                    .suggestion = "give a normal, or ask for the solid angle"});
+  text::refuse("the overcast sky of a sphere is requested", "illuminance needs a surface with a normal",
+               "give a normal, or ask for the solid angle");
 }
 
 Vec3 normal_of_sphere(const Scene& scene, const Receiver& receiver) {
@@ -118,9 +113,8 @@ void check_options(const Scene& scene, const ExactOptions& options) {
   exact::check_measure(options.measure);
   if (!options.measure.is_form_factor() &&
       (options.gradient || options.vertices || options.list_arcs || options.along)) {
-    throw InputError({.what = "a gradient of another measure than the form factor is requested",
-                      .why = "only that of the form factor is known",
-                      .suggestion = "leave out the gradient, or the measure"});
+    text::refuse("a gradient of another measure than the form factor is requested",
+                 "only that of the form factor is known", "leave out the gradient, or the measure");
   }
   if (options.along) check_direction(*options.along);
   const std::vector<FaceId>* only = options.only_occluders;
@@ -265,16 +259,12 @@ std::vector<RegionArc> VisibleRegion::arcs() const {
   for (std::size_t s = 0; s < sections.size(); ++s) {
     const visibility::ArcSection seen = sections[s];
     const auto add = [&](const visibility::BoundaryPiece& piece, const auto& at) {
-      result.push_back(
-          {at(piece.a * piece.begin.l + piece.b * piece.begin.m), at(piece.a * piece.end.l + piece.b * piece.end.m)});
+      result.push_back({at(piece.from()), at(piece.to())});
     };
     const visibility::ExactArcs exact(seen);
     for (const visibility::Arc& arc : seen.arcs) {
       const kernel::RationalVec3 x = kernel::to_rational(seen.x), nearness = exact.nearness(arc);
-      add(exact(arc), [&](const kernel::ExactVec3& t) {
-        const kernel::RationalVec3 w = kernel::to_rational(t), at = x + w * Rational(1 / dot(nearness, w));
-        return Vec3{kernel::nearest_double(at.x), kernel::nearest_double(at.y), kernel::nearest_double(at.z)};
-      });
+      add(exact(arc), [&](const kernel::ExactVec3& t) { return visibility::point_on_line(x, t, nearness); });
     }
     if (seen.is_by_edges()) continue;
     const exact::Lift lift(seen.plane->normal.exact, seen.plane->point, seen.x);

@@ -7,11 +7,9 @@ namespace exactff::exact {
 using contour::QuickContour;
 using contour::QuickCorner;
 using contour::QuickPiece;
-using kernel::double_double::Bounded;
 using visibility::Arc;
 using visibility::ArcCorner;
 using visibility::ArcLine;
-using visibility::ArcSection;
 
 namespace {
 
@@ -29,21 +27,13 @@ void QuickTier::start(const Vec3& normal) {
   sum_ = {};
 }
 
-void QuickTier::add(const ArcSection& seen) {
-  if (seen.empty()) return;
-  if (seen.is_by_edges()) {
-    for_each_batch(seen, [&] { contour_.add(pieces_, lines_); });
-  } else {
-    declined_ = true;
-  }
-}
-
 void QuickTier::add(const ArcSection& seen, const Measure& measure) {
   if (seen.empty()) return;
   if (!seen.is_by_edges()) {
     declined_ = some_are_unsure_ = true;
     return;
   }
+  if (measure.is_form_factor()) return for_each_batch(seen, [&] { contour_.add(pieces_, lines_); });
   find_terms(seen, measure, terms_);
   std::array<Bounded, 4> sums{};  // four, so that an addition need not wait for the one before
   for (std::size_t i = 0; i < terms_.size(); ++i) {
@@ -89,23 +79,21 @@ void QuickTier::for_each_batch(const ArcSection& seen, const Take& take) {
   }
 }
 
-void QuickTier::find_terms(const ArcSection& seen, std::vector<Bounded>& terms) {
-  terms.resize(seen.arcs.size());
-  std::size_t done = 0;
-  for_each_batch(seen, [&] {
-    contour_.find_terms(pieces_, lines_, std::span(terms).subspan(done, pieces_.size()));
-    done += pieces_.size();
-  });
-}
-
 void QuickTier::find_terms(const ArcSection& seen, const Measure& measure, std::vector<Bounded>& terms) {
-  contour_ = QuickContour(seen.n);
-  if (!measure_.is_of(measure, seen.n)) measure_ = contour::QuickMeasure(measure, seen.n);
-  uses_measure_ = true;
+  uses_measure_ = !measure.is_form_factor();
+  if (uses_measure_) {
+    contour_ = QuickContour(seen.n);
+    if (!measure_.is_of(measure, seen.n)) measure_ = contour::QuickMeasure(measure, seen.n);
+  }
   terms.resize(seen.arcs.size());
   std::size_t done = 0;
   for_each_batch(seen, [&] {
-    measure_.find_terms(pieces_, lines_, std::span(terms).subspan(done, pieces_.size()));
+    const auto part = std::span(terms).subspan(done, pieces_.size());
+    if (uses_measure_) {
+      measure_.find_terms(pieces_, lines_, part);
+    } else {
+      contour_.find_terms(pieces_, lines_, part);
+    }
     done += pieces_.size();
   });
 }

@@ -23,6 +23,9 @@
 
 namespace exactff::exact {
 
+using kernel::double_double::Bounded;
+using visibility::ArcSection;
+
 // --- Quick tier ---
 
 class QuickTier {
@@ -32,33 +35,28 @@ class QuickTier {
   // Starts a new sum in the existing memory. `normal`: the receiver's.
   void start(const Vec3& normal);
 
-  // Adds what is seen of one plane. Declines what the Booleans found.
-  void add(const visibility::ArcSection& seen);
-
-  // The same for another measure. Between start() and ball().
-  void add(const visibility::ArcSection& seen, const Measure& measure);
-  // Whether some of the arcs added for a measure count. Not known if something was declined and nothing certainly
-  // counts.
+  // Adds what is seen of one plane. Declines what the Booleans found. Between start() and ball(), the measure is the
+  // same.
+  void add(const ArcSection& seen, const Measure& measure);
+  // Whether some of the arcs added for a measure other than F count. Not known if something was declined and nothing
+  // certainly counts.
   [[nodiscard]] std::optional<bool> something_counts() const {
     return some_count_ ? std::optional(true) : some_are_unsure_ ? std::nullopt : std::optional(false);
   }
 
-  // The term of each arc in Eq. (4), to be added by the caller.
-  void find_terms(const visibility::ArcSection& seen, std::vector<kernel::double_double::Bounded>& terms);
-  // The same for another measure.
-  void find_terms(const visibility::ArcSection& seen, const Measure& measure,
-                  std::vector<kernel::double_double::Bounded>& terms);
-  // Encloses F, or the measure of the last call of find_terms, for a sum of terms.
-  [[nodiscard]] Ball ball(const kernel::double_double::Bounded& sum) const;
+  // The term of each arc in Eq. (4), or in the sum of another measure, to be added by the caller.
+  void find_terms(const ArcSection& seen, const Measure& measure, std::vector<Bounded>& terms);
+  // Encloses the measure of the last call of find_terms, for a sum of terms.
+  [[nodiscard]] Ball ball(const Bounded& sum) const;
 
-  // Encloses F, or the measure; its radius is at least the proved error. The ball contains every number if anything was
+  // Encloses the measure; its radius is at least the proved error. The ball contains every number if anything was
   // declined.
   [[nodiscard]] Ball ball() const;
 
  private:
   template <class Take>
-  void for_each_batch(const visibility::ArcSection& seen, const Take& take);
-  [[nodiscard]] std::uint32_t number_of_line(const visibility::ArcSection& seen, std::uint32_t line);
+  void for_each_batch(const ArcSection& seen, const Take& take);
+  [[nodiscard]] std::uint32_t number_of_line(const ArcSection& seen, std::uint32_t line);
   void make_lines();
   void forget_lines();
 
@@ -67,8 +65,8 @@ class QuickTier {
   // Of another measure than F.
   contour::QuickMeasure measure_;
   bool uses_measure_ = false;
-  std::vector<kernel::double_double::Bounded> terms_;
-  kernel::double_double::Bounded sum_;
+  std::vector<Bounded> terms_;
+  Bounded sum_;
   bool some_count_ = false, some_are_unsure_ = false;
   // Of the current plane.
   visibility::DenseIndex line_index_;

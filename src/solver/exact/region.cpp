@@ -256,13 +256,7 @@ bool Region::sum_is_certain(const Measure& measure, int digits, int precision_ca
   const bool is_form_factor = measure.is_form_factor();
   if (is_form_factor && has_gradient_) return is_determined(gradient_.form_factor(), kBits, digits, result);
   quick_.start(view_->n);
-  for (std::size_t s = 0; s < arcs_.size(); ++s) {
-    if (is_form_factor) {
-      quick_.add(arcs_[s]);
-    } else {
-      quick_.add(arcs_[s], measure);
-    }
-  }
+  for (std::size_t s = 0; s < arcs_.size(); ++s) quick_.add(arcs_[s], measure);
   if (!is_form_factor) {
     const std::optional<bool> counts = quick_.something_counts();
     if (counts != true) return counts.has_value();

@@ -2,7 +2,6 @@
 // 8): the values of all measures, the gradient, and the derivatives by vertices, each from the same arcs.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,8 +12,8 @@
 #include "gradient/gradient.h"
 #include "gradient/vertex_gradient.h"
 #include "kernel/numbers.h"
-#include "visibility/edge_workspace.h"
 #include "visibility/visible_arcs.h"
+#include "visibility/visible_boundary.h"
 
 namespace exactff::exact {
 
@@ -78,3 +77,18 @@ class Region {
 };
 
 }  // namespace exactff::exact
+
+namespace exactff {
+
+// The memory behind a Workspace.
+struct Workspace::Memory {
+  visibility::EdgeWorkspace edges;
+  exact::Region region;  // the last one
+};
+
+struct WorkspaceInside {
+  using Memory = Workspace::Memory;
+  [[nodiscard]] static Memory& memory(Workspace& workspace) { return workspace.memory(); }
+};
+
+}  // namespace exactff

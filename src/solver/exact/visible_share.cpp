@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "exact/workspace.h"
+#include "exact/region.h"
 #include "visibility/visible_boundary.h"
 
 namespace exactff::exact {
@@ -44,12 +44,7 @@ VisibleShare::VisibleShare(const Scene& scene, const Receiver& receiver, const v
 
 void VisibleShare::make_frame() {
   std::vector<kernel::Ring> rings;
-  for (const std::uint32_t index : plane_.pieces) {
-    kernel::Ring& ring = rings.emplace_back();
-    for (const std::uint32_t corner : view_.scene.corners(view_.scene.pieces()[index])) {
-      ring.push_back(kernel::make_direction(kernel::exact_difference(view_.scene.vertices()[corner], view_.x).v));
-    }
-  }
+  for (const std::uint32_t index : plane_.pieces) rings.push_back(ring_of(view_, index));
   frame_.emplace(away_, rings);
   const int k = longest_axis(away_);
   kernel::negate(away_);
@@ -65,8 +60,8 @@ void VisibleShare::make_frame() {
 
 void VisibleShare::add(const BoundaryPiece& piece) {
   Piece added;
-  added.exact_p = frame_->to_plane(piece.a * piece.begin.l + piece.b * piece.begin.m);
-  added.exact_q = frame_->to_plane(piece.a * piece.end.l + piece.b * piece.end.m);
+  added.exact_p = frame_->to_plane(piece.from());
+  added.exact_q = frame_->to_plane(piece.to());
   if (!frame_->keeps_orientation()) std::swap(added.exact_p, added.exact_q);
   added.p = rounded(added.exact_p);
   added.q = rounded(added.exact_q);

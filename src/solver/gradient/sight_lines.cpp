@@ -6,17 +6,9 @@
 
 #include "kernel/expect.h"
 #include "kernel/vec.h"
+#include "scene/scene.h"
 
 namespace exactff::gradient {
-
-using kernel::ExactVec3;
-using kernel::sign;
-using visibility::CornerId;
-using visibility::EdgeId;
-using visibility::OutlineId;
-using visibility::Outlines;
-using visibility::PieceClip;
-using visibility::PlaneQuery;
 
 namespace {
 
@@ -68,7 +60,7 @@ void Profile::gather(const PlaneQuery& query, Extent extent) {
     clip.take(query.view.scene.corners(query.view.scene.pieces()[cover]));
     const OutlineId outline = clip.add_occluder(false, facing_of(query.view, query.view.scene.pieces()[cover]));
     pieces_.push_back(cover);
-    stays_hidden_ = hides_more(outline);
+    stays_hidden_ = outlines_.cover(outline, source_count_, 1);
   }
 }
 
@@ -78,7 +70,7 @@ void Profile::visit(Shaft& shaft, std::uint32_t index, bool inside) {
   const Piece& piece = query.view.scene.pieces()[index];
   shaft.clip.take(query.view.scene.corners(piece));
   const visibility::Sides sides = inside ? visibility::kInsideShaft : shaft.sides.sides_by_filter();
-  if (sides.beside || (!sides.certain && is_beside(shaft.source, shaft.clip.corners()))) return;
+  if (sides.beside || (!sides.certain && outlines_.are_beside(shaft.source, shaft.clip.corners()))) return;
   seen_.set(index);
   bool some_before = sides.certain && sides.some_above_each, some_behind = sides.some_below_first;
   if (!some_before) {
@@ -98,34 +90,10 @@ void Profile::visit(Shaft& shaft, std::uint32_t index, bool inside) {
   }
   const OutlineId outline = shaft.clip.add_occluder(some_behind, facing);
   pieces_.push_back(index);
-  stays_hidden_ = hides_more(outline);
+  stays_hidden_ = outlines_.cover(outline, source_count_, 1);
 }
 
-// Certainly outside the closed shaft of one outline of the source.
-bool Profile::is_beside(OutlineId source, std::span<const CornerId> corners) const {
-  const Outlines::Outline& outline = outlines_.outline(source);
-  for (EdgeId side = outline.first; side < outline.first + outline.count; ++side) {
-    const auto is_outside = [&](CornerId corner) {
-      const visibility::Height height = outlines_.height(outlines_.edge(side), corner);
-      return height.value < -height.error;
-    };
-    if (std::ranges::all_of(corners, is_outside)) return true;
-  }
-  return false;
-}
-
-bool Profile::hides_more(OutlineId occluder) {
-  const Outlines::Outline& o = outlines_.outline(occluder);
-  const Outlines::Outline& last = outlines_.outline(static_cast<OutlineId>(source_count_ - 1));
-  for (EdgeId f = o.first; f < o.first + o.count; ++f) {
-    for (EdgeId s = 0; s < last.first + last.count; ++s) {
-      if (outlines_.side(outlines_.edge(f), outlines_.edge(s).a) <= 0) return false;
-    }
-  }
-  return true;
-}
-
-Outlines::Edge Profile::edge_in_plane(const kernel::ExactVec3& normal) {
+Outlines::Edge Profile::edge_in_plane(const ExactVec3& normal) {
   const kernel::Approx3 rounded = kernel::approx(normal);
   const auto holds = [&](CornerId corner) {
     const int filtered = outlines_.side_by_filter(rounded, corner);
@@ -140,7 +108,7 @@ Outlines::Edge Profile::edge_in_plane(const kernel::ExactVec3& normal) {
 
 void Profile::gather_around_plane(const PlaneQuery& query) {
   start();
-  const visibility::View& view = query.view;
+  const View& view = query.view;
   const visibility::SourcePlane& plane = query.plane;
   outlines_.start(view.scene, view.x, kernel::max_norm(kernel::approx_difference(plane.second, plane.point)));
   outlines_.set_source_plane(plane.normal.exact, plane.fine_normal, plane.point);
@@ -163,15 +131,14 @@ void Profile::gather_around_plane(const PlaneQuery& query) {
   });
 }
 
-bool holds_x(const visibility::View& view, const Piece& piece) {
+bool holds_x(const View& view, const Piece& piece) {
   const auto vertices = view.scene.vertices();
   const auto corners = view.scene.corners(piece);
   const auto arrow = [&](std::uint32_t v) { return kernel::exact_difference(vertices[v], view.x).v; };
-  const kernel::ExactVec3 normal =
-      cross(kernel::exact_difference(vertices[piece.frame[1]], vertices[piece.frame[0]]).v,
-            kernel::exact_difference(vertices[piece.frame[2]], vertices[piece.frame[0]]).v);
+  const ExactVec3 normal = cross(kernel::exact_difference(vertices[piece.frame[1]], vertices[piece.frame[0]]).v,
+                                 kernel::exact_difference(vertices[piece.frame[2]], vertices[piece.frame[0]]).v);
   for (std::size_t c = 0; c < corners.size(); ++c) {
-    const kernel::ExactVec3 p = arrow(corners[c]), q = arrow(corners[c + 1 == corners.size() ? 0 : c + 1]);
+    const ExactVec3 p = arrow(corners[c]), q = arrow(corners[c + 1 == corners.size() ? 0 : c + 1]);
     if (sign(dot(normal, cross(p, q))) < 0) return false;
   }
   return true;
@@ -184,9 +151,7 @@ SightDirections::SightDirections(Outlines& outlines, const Outlines::Edge& edge)
   make_primitive(normal_);
 }
 
-int SightDirections::turn(const ExactVec3& p, const ExactVec3& q) const {
-  return kernel::sign(dot(normal_, cross(p, q)));
-}
+int SightDirections::turn(const ExactVec3& p, const ExactVec3& q) const { return sign(dot(normal_, cross(p, q))); }
 
 bool SightDirections::is_between(const ExactVec3& from, const ExactVec3& to, const ExactVec3& t) const {
   return turn(from, t) >= 0 && turn(t, to) >= 0;
@@ -234,8 +199,8 @@ constexpr Vec3 kAnywhere{0.5398041762934, 0.2874930211667, 0.7911734960021};
 }  // namespace
 
 // The number of the plane with the normal N is |N . c| / |N| for a fixed vector c of about unit length. The components
-// of N are known to within e = 2^-49 |a||b| (outlines.h). So its error is below 2 sqrt(3) e / |N| + 8u, for which
-// edge.error / |N| + 2^-48 is more than enough.
+// of N are known to within e = kCrossError |a||b| (kernel/filter.h). So its error is below 2 sqrt(3) e / |N| + 8u, for
+// which edge.error / |N| + 2^-48 is more than enough.
 void SightGroups::add(const Outlines& outlines, EdgeId id) {
   const Outlines::Edge& edge = outlines.edge(id);
   const double length = std::sqrt(kernel::dot(edge.normal, edge.normal));
@@ -257,7 +222,7 @@ bool are_on_one_line(const Outlines& outlines, std::span<const EdgeId> group) {
   const auto ends = ends_of(group.front());
   if (!ends.first || !ends.second) return false;
   const Vec3& origin = outlines.position(*ends.first);
-  const kernel::ExactVec3 along = kernel::exact_difference(outlines.position(*ends.second), origin).v;
+  const ExactVec3 along = kernel::exact_difference(outlines.position(*ends.second), origin).v;
   return std::ranges::all_of(group, [&](EdgeId id) {
     const auto [a, b] = ends_of(id);
     const auto is_on_line = [&](std::uint32_t v) {
@@ -266,6 +231,95 @@ bool are_on_one_line(const Outlines& outlines, std::span<const EdgeId> group) {
     };
     return a && b && is_on_line(*a) && is_on_line(*b);
   });
+}
+
+// --- Vertex motions ---
+
+std::array<std::uint32_t, 3> frame_of(const Scene& scene, std::uint32_t index) {
+  const Piece& piece = scene.pieces()[index];
+  const Face& face = scene.face(piece.face);
+  const std::span<const std::uint32_t> corners =
+      face.shape == FaceShape::kPlanar ? std::span<const std::uint32_t>(face.rings.front()) : scene.corners(piece);
+  std::vector<std::uint32_t> ring;
+  for (const std::uint32_t corner : corners) ring.push_back(places(scene)[corner]);
+  std::ranges::sort(ring);
+  ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+  const auto arrow = [&](std::uint32_t place) {
+    return kernel::exact_difference(scene.vertices()[place], scene.vertices()[ring[0]]).v;
+  };
+  const ExactVec3 second = arrow(ring[1]);
+  const auto third =
+      std::find_if(ring.begin() + 2, ring.end(), [&](auto place) { return !is_zero(cross(second, arrow(place))); });
+  EXACTFF_EXPECT(third != ring.end());
+  return {ring[0], ring[1], *third};
+}
+
+VertexMotions::VertexMotions(const PlaneQuery& query)
+    : scene_(query.view.scene), plane_(query.plane), places_(places(scene_)), x_(to_rational(query.view.x)) {
+  source_ = make_frame(frame_of(scene_, plane_.pieces.front()));
+}
+
+RationalVec3 VertexMotions::point(std::uint32_t vertex) const { return to_rational(scene_.vertices()[vertex]) - x_; }
+
+// Requires that the plane does not hold x.
+VertexMotions::Frame VertexMotions::make_frame(const std::array<std::uint32_t, 3>& corners) const {
+  const RationalVec3 a = point(corners[0]), b = point(corners[1]), c = point(corners[2]);
+  const Rational inverse = 1 / dot(a, cross(b, c));
+  Frame result;
+  result.places = corners;
+  result.shares = {cross(b, c) * inverse, cross(c, a) * inverse, cross(a, b) * inverse};
+  result.nearness = result.shares[0] + result.shares[1] + result.shares[2];
+  return result;
+}
+
+VertexMotions::VertexPair VertexMotions::pair_of(std::uint32_t p, std::uint32_t q) const {
+  return std::minmax(places_[p], places_[q]);
+}
+
+bool VertexMotions::is_in_source_plane(std::uint32_t vertex) const {
+  return kernel::orientation(plane_.point, plane_.second, plane_.third, scene_.vertices()[vertex]) == 0;
+}
+
+std::array<std::uint32_t, 3> VertexMotions::frame_of_piece(std::uint32_t piece) const {
+  return frame_of(scene_, piece);
+}
+
+std::optional<VertexMotions::VertexPair> VertexMotions::line_of_source(const Segment& a, const Segment& b) const {
+  const VertexPair p = pair_of(a.first, a.second), q = pair_of(b.first, b.second);
+  const auto is_end = [](std::uint32_t place, const VertexPair& pair) {
+    return place == pair.first || place == pair.second;
+  };
+  if (a.first == a.second && b.first == b.second) return pair_of(a.first, b.first);
+  if (a.first == a.second) return is_end(p.first, q) ? std::optional(q) : std::nullopt;
+  if (b.first == b.second) return is_end(q.first, p) ? std::optional(p) : std::nullopt;
+  return std::nullopt;
+}
+
+// A convex outline that is cut lies on both sides of the source's plane, so that an edge with both ends in this plane
+// is the cut.
+std::optional<VertexMotions::VertexPair> VertexMotions::line_of_occluder(const Segment& a, const Segment& b,
+                                                                         bool whole) const {
+  const auto line = line_of_source(a, b);
+  if (line && !whole && is_in_source_plane(line->first) && is_in_source_plane(line->second)) return std::nullopt;
+  return line;
+}
+
+std::vector<Motion> VertexMotions::of_line(const ExactVec3& N, const VertexPair& line) const {
+  const RationalVec3 a = point(line.first), b = point(line.second), pole = cross(a, b);
+  const Rational inverse = 1 / dot(pole, pole);
+  const RationalVec3 turn = to_rational(N) * Rational(1 / Rational(N[longest_axis(N)]));
+  return {{line.first, cross(b, pole) * inverse, turn}, {line.second, cross(pole, a) * inverse, turn}};
+}
+
+std::vector<Motion> VertexMotions::of_cut(const ExactVec3& N, std::uint32_t piece) const {
+  const Frame face = make_frame(frame_of(scene_, piece));
+  const Rational inverse = 1 / (face.nearness - source_.nearness)[longest_axis(N)];
+  std::vector<Motion> result;
+  for (std::size_t i = 0; i < 3; ++i) result.push_back({face.places[i], face.shares[i], face.nearness * inverse});
+  for (std::size_t i = 0; i < 3; ++i) {
+    result.push_back({source_.places[i], source_.shares[i], source_.nearness * Rational(-inverse)});
+  }
+  return result;
 }
 
 }  // namespace exactff::gradient

@@ -11,16 +11,6 @@
 
 namespace exactff::gradient {
 
-using kernel::ExactVec3;
-using kernel::Rational;
-using kernel::RationalVec3;
-using kernel::sign;
-using kernel::to_rational;
-using visibility::EdgeId;
-using visibility::OutlineId;
-using visibility::Outlines;
-using visibility::PlaneQuery;
-
 SightPlane::SightPlane(const PlaneQuery& query, Profile& profile, const Outlines::Edge& edge,
                        const VertexMotions* motions)
     : SightDirections(profile.outlines(), edge), query_(query), profile_(profile), motions_(motions) {}

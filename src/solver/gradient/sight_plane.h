@@ -2,7 +2,7 @@
 //
 // Let N be the plane's normal, and let w be a direction in the plane. Beside w, directions are given by the coordinate
 // s along N / |N|. If something moves by d, each line that bounds the view moves there to s = f . d, with a vector f
-// for each line (vertex_motions.h). To first order, near w,
+// for each line (sight_lines.h). To first order, near w,
 //   - a face with an edge in the plane, on the side of N, covers all s above the line of the edge;
 //     a face on the other side covers all s below it;
 //   - a face that x sees edge-on covers what is between the lines of its near and its far side;
@@ -31,17 +31,19 @@
 
 #include "contour/contour.h"
 #include "gradient/sight_lines.h"
-#include "gradient/vertex_motions.h"
 #include "kernel/numbers.h"
 #include "visibility/plane_visibility.h"
 
 namespace exactff::gradient {
 
+using contour::ArcSum;
+using contour::MovingArc;
+
 // An arc along which something changes if x moves.
 struct SightArc {
-  kernel::ExactVec3 begin, end;  // N . (begin x end) > 0
+  ExactVec3 begin, end;  // N . (begin x end) > 0
   // -M / N, as a nearness: if x moves towards N, and away from it.
-  kernel::RationalVec3 gain_ahead, gain_back;
+  RationalVec3 gain_ahead, gain_back;
   bool is_kink = false;
   bool edge_on = false;               // of a kink: a face that x sees edge-on is part of it
   std::vector<std::uint32_t> pieces;  // of a kink: what meets there, without the source
@@ -50,15 +52,15 @@ struct SightArc {
 // What an arc adds to the derivative by one vertex: weight / |C| 2 I / (2 pi |n|), where the arc's nearness is a share.
 struct VertexArc {
   std::uint32_t place = 0;
-  contour::MovingArc arc;
-  kernel::RationalVec3 turn;  // divided by the component of C of largest magnitude
+  MovingArc arc;
+  RationalVec3 turn;  // divided by the component of C of largest magnitude
 };
 
 class SightPlane : public SightDirections {
  public:
   // The plane through x and the edge. The profile is that of the query; if vertices move, it is gathered with what
   // meets the source's plane. `motions`: of the vertices; null: x moves.
-  SightPlane(const visibility::PlaneQuery& query, Profile& profile, const visibility::Outlines::Edge& edge,
+  SightPlane(const PlaneQuery& query, Profile& profile, const Outlines::Edge& edge,
              const VertexMotions* motions = nullptr);
 
   // --- If x moves ---
@@ -83,8 +85,8 @@ class SightPlane : public SightDirections {
   using Motions = std::vector<Motion>;
   // A line, or what crosses the plane.
   struct Element {
-    kernel::ExactVec3 from, to;  // N . (from x to) > 0
-    int side = 0;                // on which its outline lies; 0: on both
+    ExactVec3 from, to;  // N . (from x to) > 0
+    int side = 0;        // on which its outline lies; 0: on both
     bool is_source = false;
     bool touches = false;  // it lies in the source's plane
     bool present = true;   // it hides something now
@@ -95,62 +97,59 @@ class SightPlane : public SightDirections {
   // A piece that lies in the plane.
   struct Sheet {
     struct Side {
-      kernel::ExactVec3 from, to;
-      kernel::RationalVec3 nearness;
+      ExactVec3 from, to;
+      RationalVec3 nearness;
       Motions motions;
     };
     std::uint32_t piece = 0;
     std::vector<Side> sides;
-    std::vector<kernel::ExactVec3> corners;
+    std::vector<ExactVec3> corners;
     std::vector<std::uint32_t> places;  // of the corners
   };
   // Where a sheet is met in one direction.
   struct Chord {
     const Sheet* sheet = nullptr;
     const Sheet::Side *near = nullptr, *far = nullptr;
-    kernel::Rational u_near, u_far;
+    Rational u_near, u_far;
     bool is_cut = false;  // by the source's plane
   };
   struct Change;
   struct Verdict;
 
-  [[nodiscard]] kernel::RationalVec3 nearness_of(const Vec3& a, const Vec3& b, const Vec3& c) const;
-  [[nodiscard]] kernel::RationalVec3 nearness_of(std::uint32_t piece) const;
-  void add_outline(visibility::OutlineId id);
+  [[nodiscard]] RationalVec3 nearness_of(const Vec3& a, const Vec3& b, const Vec3& c) const;
+  [[nodiscard]] RationalVec3 nearness_of(std::uint32_t piece) const;
+  void add_outline(OutlineId id);
   void add_meeting(std::uint32_t piece);
   [[nodiscard]] Sheet sheet_of(std::uint32_t piece) const;
   void set_motions(Element& element) const;
   [[nodiscard]] bool find_range();
-  [[nodiscard]] bool clamp(kernel::ExactVec3& from, kernel::ExactVec3& to) const;
+  [[nodiscard]] bool clamp(ExactVec3& from, ExactVec3& to) const;
   [[nodiscard]] bool gather();
-  void add_meetings(const std::vector<const kernel::RationalVec3*>& lines,
-                    std::vector<kernel::ExactVec3>& breaks) const;
-  void sort(std::vector<kernel::ExactVec3>& directions) const;
-  [[nodiscard]] std::vector<kernel::ExactVec3> breaks() const;
+  void add_meetings(const std::vector<const RationalVec3*>& lines, std::vector<ExactVec3>& breaks) const;
+  void sort(std::vector<ExactVec3>& directions) const;
+  [[nodiscard]] std::vector<ExactVec3> breaks() const;
   // Calls visit(begin, end) for each arc between neighbours, until one call returns false.
   template <class Visit>
-  void for_each_arc(const std::vector<kernel::ExactVec3>& breaks, const Visit& visit) const;
+  void for_each_arc(const std::vector<ExactVec3>& breaks, const Visit& visit) const;
 
-  [[nodiscard]] std::optional<Chord> chord_of(const Sheet& sheet, const kernel::ExactVec3& t) const;
-  [[nodiscard]] bool look_at(const kernel::ExactVec3& t);
-  [[nodiscard]] Verdict judge(std::uint32_t place, const kernel::ExactVec3& begin, const kernel::ExactVec3& end) const;
-  [[nodiscard]] std::optional<SightArc> arc_between(const kernel::ExactVec3& begin, const kernel::ExactVec3& end);
-  [[nodiscard]] std::optional<SightArc> arc_of_source(const kernel::ExactVec3& begin,
-                                                      const kernel::ExactVec3& end) const;
+  [[nodiscard]] std::optional<Chord> chord_of(const Sheet& sheet, const ExactVec3& t) const;
+  [[nodiscard]] bool look_at(const ExactVec3& t);
+  [[nodiscard]] Verdict judge(std::uint32_t place, const ExactVec3& begin, const ExactVec3& end) const;
+  [[nodiscard]] std::optional<SightArc> arc_between(const ExactVec3& begin, const ExactVec3& end);
+  [[nodiscard]] std::optional<SightArc> arc_of_source(const ExactVec3& begin, const ExactVec3& end) const;
   [[nodiscard]] bool may_have_kinks() const;
-  [[nodiscard]] bool is_concerned(std::uint32_t place, const kernel::ExactVec3& begin,
-                                  const kernel::ExactVec3& end) const;
+  [[nodiscard]] bool is_concerned(std::uint32_t place, const ExactVec3& begin, const ExactVec3& end) const;
   [[nodiscard]] std::vector<std::uint32_t> movers() const;
   [[nodiscard]] OfVertices judge_vertices();
 
-  const visibility::PlaneQuery& query_;
+  const PlaneQuery& query_;
   Profile& profile_;
   const VertexMotions* motions_;
-  kernel::RationalVec3 source_nearness_;
+  RationalVec3 source_nearness_;
   Motions source_motions_;  // if x moves
   std::vector<Element> elements_;
   std::vector<Sheet> sheets_;
-  kernel::ExactVec3 first_, last_;  // the directions that matter
+  ExactVec3 first_, last_;  // the directions that matter
   // At one direction:
   std::vector<const Element*> active_;
   std::vector<Chord> chords_;

@@ -11,23 +11,7 @@
 
 namespace exactff::gradient {
 
-using contour::ArcSum;
-using contour::MovingArc;
-using kernel::ExactVec3;
-using kernel::Rational;
-using kernel::RationalVec3;
-using visibility::Arc;
-using visibility::ArcCorner;
-using visibility::ArcLine;
-using visibility::ArcSection;
-using visibility::BoundaryPiece;
-using visibility::CornerId;
-using visibility::EdgeId;
-using visibility::OutlineId;
-using visibility::Outlines;
-using visibility::PlaneQuery;
-
-void VertexGradient::start(const visibility::View& view) {
+void VertexGradient::start(const View& view) {
   normal_ = view.n;
   quick_.start(view.n);
   sums_.clear();
@@ -62,41 +46,11 @@ void VertexGradient::add(const PlaneQuery& query, const ArcSection& seen) {
 
 // For certain: beyond a side of each of the source's outlines.
 bool VertexGradient::is_beside_source(CornerId a, CornerId b) const {
-  const Outlines& outlines = profile_.outlines();
+  const std::array ends{a, b};
   for (OutlineId o = 0; o < profile_.source_count(); ++o) {
-    const Outlines::Outline& outline = outlines.outline(o);
-    bool beside = false;
-    for (EdgeId id = outline.first; id < outline.first + outline.count && !beside; ++id) {
-      const auto is_outside = [&](CornerId corner) {
-        const visibility::Height height = outlines.height(outlines.edge(id), corner);
-        return height.value < -height.error;
-      };
-      beside = is_outside(a) && is_outside(b);
-    }
-    if (!beside) return false;
+    if (!profile_.outlines().are_beside(o, ends)) return false;
   }
   return true;
-}
-
-// Edges without a piece on both sides, and those in the source's plane.
-void VertexGradient::add_lines() {
-  Outlines& outlines = profile_.outlines();
-  const std::size_t count = outlines.edges().size();
-  sides_.assign(count, 0);
-  table_.clear(std::max<std::size_t>(count, 1));
-  groups_.clear();
-  const auto is_source = [&](EdgeId id) { return outlines.edge(id).outline < profile_.source_count(); };
-  for (EdgeId id = 0; id < count; ++id) {
-    if (is_source(id)) continue;
-    const auto edges = outlines.edges();
-    const EdgeId first = table_.add(id, edges);
-    sides_[first] = static_cast<std::uint8_t>(sides_[first] | (edges[first].a == edges[id].a ? 1U : 2U));
-  }
-  for (EdgeId id = 0; id < count; ++id) {
-    if (is_source(id) || sides_[id] == 1 || (sides_[id] == 3 && in_source_plane_.contains(id))) {
-      groups_.add(outlines, id);
-    }
-  }
 }
 
 // Whether the lines move in different ways, or lie in the source's plane.
@@ -140,7 +94,8 @@ void VertexGradient::find_kinks(const PlaneQuery& query, const VertexMotions& mo
     kinks_.insert(motions.source_frame().begin(), motions.source_frame().end());
   }
   in_source_plane_.insert(meeting.begin(), meeting.end());
-  add_lines();
+  // Edges without a piece on both sides, and those in the source's plane.
+  groups_.add_open(outlines, profile_.source_count(), [&](EdgeId id) { return in_source_plane_.contains(id); });
   const ExactVec3 horizon = query.view.normal().exact;
   const auto visit = [&](std::span<const EdgeId> group) {
     if (!differ(motions, group)) return true;
@@ -271,8 +226,7 @@ void VertexGradient::add_by_edges(const VertexMotions& motions, const ArcSection
     const auto line = vertices_of(motions, seen, of);
     if (is_of_source(of) && !line) continue;  // on the horizon
     const BoundaryPiece piece = exact(arc);
-    ExactVec3 begin = piece.a * piece.begin.l + piece.b * piece.begin.m,
-              end = piece.a * piece.end.l + piece.b * piece.end.m;
+    ExactVec3 begin = piece.from(), end = piece.to();
     const ExactVec3 pole = cross(begin, end);
     if (is_zero(pole)) continue;
     const std::vector<Motion> motion =
@@ -356,8 +310,7 @@ void VertexGradient::certify(int cap, Gradient& result) {
       ArcSum sum;
       for (const VertexArc& one : arcs) {
         const ExactVec3 c = cross(one.arc.begin, one.arc.end);
-        const Rational& along = axis == 0 ? one.turn.x : axis == 1 ? one.turn.y : one.turn.z;
-        sum.add_weighted(one.arc, n, along * Rational(c[longest_axis(c)]));
+        sum.add_weighted(one.arc, n, one.turn[axis] * Rational(c[longest_axis(c)]));
       }
       gradient::certify(sum, factor, cap, vertex.position[axis]);
     }

@@ -31,33 +31,30 @@ namespace exactff::gradient {
 class VertexGradient {
  public:
   // Starts a new one.
-  void start(const visibility::View& view);
+  void start(const View& view);
   // Takes what is seen of one plane.
-  void add(const visibility::PlaneQuery& query, const visibility::ArcSection& seen);
+  void add(const PlaneQuery& query, const ArcSection& seen);
 
   // As those of PointGradient.
   [[nodiscard]] bool finish(int cap, Gradient& result);
-  void add_exactly(const visibility::PlaneQuery& query, const visibility::ArcSection& seen);
+  void add_exactly(const PlaneQuery& query, const ArcSection& seen);
   void certify(int cap, Gradient& result);
 
  private:
-  [[nodiscard]] bool gather(const visibility::PlaneQuery& query);
-  void find_kinks(const visibility::PlaneQuery& query, const VertexMotions& motions, bool is_visible);
-  [[nodiscard]] bool is_beside_source(visibility::CornerId a, visibility::CornerId b) const;
-  void add_lines();
-  [[nodiscard]] bool differ(const VertexMotions& motions, std::span<const visibility::EdgeId> group);
+  [[nodiscard]] bool gather(const PlaneQuery& query);
+  void find_kinks(const PlaneQuery& query, const VertexMotions& motions, bool is_visible);
+  [[nodiscard]] bool is_beside_source(CornerId a, CornerId b) const;
+  [[nodiscard]] bool differ(const VertexMotions& motions, std::span<const EdgeId> group);
   [[nodiscard]] bool overlaps_source(const VertexMotions& motions, std::span<const std::uint32_t> vertices);
-  void add_quickly(const VertexMotions& motions, const visibility::ArcSection& seen);
-  void add_by_edges(const VertexMotions& motions, const visibility::ArcSection& seen);
-  void add_by_planes(const visibility::PlaneQuery& query, const VertexMotions& motions,
-                     const visibility::ArcSection& seen);
-  [[nodiscard]] bool is_of_source(const visibility::Outlines::Edge& edge) const;
-  [[nodiscard]] bool is_of_source(const visibility::ArcLine& line) const;
+  void add_quickly(const VertexMotions& motions, const ArcSection& seen);
+  void add_by_edges(const VertexMotions& motions, const ArcSection& seen);
+  void add_by_planes(const PlaneQuery& query, const VertexMotions& motions, const ArcSection& seen);
+  [[nodiscard]] bool is_of_source(const Outlines::Edge& edge) const;
+  [[nodiscard]] bool is_of_source(const ArcLine& line) const;
   [[nodiscard]] std::optional<VertexMotions::VertexPair> vertices_of(const VertexMotions& motions,
-                                                                     const visibility::ArcSection& seen,
-                                                                     const visibility::ArcLine& line) const;
-  [[nodiscard]] std::uint32_t piece_of_cut(const VertexMotions& motions, const visibility::ArcSection& seen,
-                                           const visibility::ArcLine& line) const;
+                                                                     const ArcSection& seen, const ArcLine& line) const;
+  [[nodiscard]] std::uint32_t piece_of_cut(const VertexMotions& motions, const ArcSection& seen,
+                                           const ArcLine& line) const;
 
   struct Sums {
     std::array<kernel::double_double::Bounded, 3> value;
@@ -71,10 +68,8 @@ class VertexGradient {
 
   Vec3 normal_;
   Profile profile_;
-  visibility::EdgeTable table_;
   SightGroups groups_;
-  std::vector<std::uint8_t> sides_;  // by edge, as in kinks.h
-  std::set<visibility::EdgeId> in_source_plane_;
+  std::set<EdgeId> in_source_plane_;
   QuickArcs quick_;
   std::map<std::uint32_t, Sums> sums_;  // by place
   std::set<std::uint32_t> kinks_;

@@ -396,7 +396,6 @@ Pairs::Ends Pairs::ends_of(std::size_t entry) const {
 
 void Pairs::compute(std::size_t pair, const std::function<void(std::size_t, const ViewFactor&)>& take,
                     double finer) const {
-  const kernel::StandardArithmetic of_thread;
   ViewFactorOptions options = options_;
   options.accuracy /= finer;
   const auto [from, to, turned] = ends_of(entries_[pair].front());

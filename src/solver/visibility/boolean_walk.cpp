@@ -9,16 +9,6 @@
 
 namespace exactff::visibility {
 
-using kernel::Approx3;
-using kernel::Direction;
-using kernel::ExactVec3;
-using kernel::Integer;
-using kernel::kUncertain;
-using kernel::Rational;
-using kernel::Ring;
-using kernel::ScaledVec3;
-using kernel::sign;
-
 // --- Convex clip ---
 
 // Repeated clips construct corners from constructed corners: without the division the numbers would grow with each
@@ -143,7 +133,7 @@ int Shaft::depth_sign(std::size_t corner) {
   const long common = std::min(exact.exponent, offset_.exponent);
   value <<= static_cast<mp_bitcnt_t>(exact.exponent - common);
   h <<= static_cast<mp_bitcnt_t>(offset_.exponent - common);
-  return cmp(value, h) < 0 ? -1 : cmp(value, h) > 0 ? 1 : 0;
+  return kernel::compare(value, h);
 }
 
 bool Shaft::may_meet(std::span<const std::uint32_t> corners, ShaftCulling culling) {
@@ -275,7 +265,6 @@ class BooleanWalk {
  private:
   Outcome find_outcome();
   void gather_source();
-  [[nodiscard]] Ring ring_of(std::uint32_t piece) const;
   bool clip_by_horizon();
   void make_hull();
   bool gather_occluders();
@@ -324,7 +313,7 @@ Outcome BooleanWalk::find_outcome() {
   std::vector<Polygon2> shadows;
   for (const Occluder& occluder : occluders_) shadows.push_back(frame().to_polygon(occluder.ring));
   for (const std::uint32_t cover : plane_.covers) {
-    Ring ring = ring_of(cover);
+    Ring ring = ring_of(view_, cover);
     if (facing_of(view_, view_.scene.pieces()[cover]) > 0) std::ranges::reverse(ring);
     shadows.push_back(frame().to_polygon(ring));
   }
@@ -337,16 +326,7 @@ Outcome BooleanWalk::find_outcome() {
 
 // The pieces as x sees them.
 void BooleanWalk::gather_source() {
-  for (const std::uint32_t index : plane_.pieces) source_.push_back(ring_of(index));
-}
-
-// As x sees the front of the piece.
-Ring BooleanWalk::ring_of(std::uint32_t piece) const {
-  Ring ring;
-  for (const std::uint32_t corner : view_.scene.corners(view_.scene.pieces()[piece])) {
-    ring.push_back(kernel::make_direction(kernel::exact_difference(view_.scene.vertices()[corner], view_.x).v));
-  }
-  return ring;
+  for (const std::uint32_t index : plane_.pieces) source_.push_back(ring_of(view_, index));
 }
 
 bool BooleanWalk::clip_by_horizon() {

@@ -46,7 +46,7 @@ namespace exactff::visibility {
 
 struct Occluder {
   FaceId face{};
-  kernel::Ring ring;  // clipped to the shaft, as x sees it
+  Ring ring;  // clipped to the shaft, as x sees it
 };
 
 enum class Fate { kOutside, kInShaft, kHidesAll };
@@ -55,7 +55,7 @@ class Shaft {
  public:
   // `hull`: strictly convex, as x sees it. `front`: the source's front normal; x is in front. `point`: any point in its
   // plane.
-  Shaft(const Scene& scene, const Vec3& x, const kernel::Ring& hull, const kernel::ExactVec3& front, const Vec3& point);
+  Shaft(const Scene& scene, const Vec3& x, const Ring& hull, const ExactVec3& front, const Vec3& point);
 
   // For the bounding-volume tree.
   [[nodiscard]] std::span<const HalfSpace> half_spaces() const { return half_spaces_; }
@@ -67,30 +67,30 @@ class Shaft {
 
  private:
   struct Offset {  // h = value * 2^exponent
-    kernel::Integer value;
+    Integer value;
     long exponent = 0;
     double approx = 0.0;  // in the scale of toward_.approx
   };
 
   [[nodiscard]] bool may_meet(std::span<const std::uint32_t> corners, ShaftCulling culling);
   [[nodiscard]] int depth_sign(std::size_t corner);  // sign of M . t - h
-  [[nodiscard]] int side_sign(const kernel::Direction& normal, std::size_t corner);
-  const kernel::ScaledVec3& exact_corner(std::size_t corner);
-  bool clip_to_source_plane(kernel::Ring& ring);
-  [[nodiscard]] bool hides_all(const kernel::Ring& ring) const;
+  [[nodiscard]] int side_sign(const Direction& normal, std::size_t corner);
+  const ScaledVec3& exact_corner(std::size_t corner);
+  bool clip_to_source_plane(Ring& ring);
+  [[nodiscard]] bool hides_all(const Ring& ring) const;
 
   const Scene& scene_;
   Vec3 x_;
-  kernel::Ring hull_;
-  std::vector<kernel::Direction> sides_;
-  kernel::Direction toward_;  // M
+  Ring hull_;
+  std::vector<Direction> sides_;
+  Direction toward_;  // M
   Offset offset_;
   std::vector<HalfSpace> half_spaces_;
 
   // The current piece.
   std::span<const std::uint32_t> corners_;
-  std::vector<kernel::Approx3> approx_corners_;
-  std::vector<std::optional<kernel::ScaledVec3>> exact_corners_;
+  std::vector<Approx3> approx_corners_;
+  std::vector<std::optional<ScaledVec3>> exact_corners_;
   std::vector<int> depth_;
 };
 
@@ -103,8 +103,8 @@ Cutters find_cutters(const View& view, const SourcePlane& plane, const BoundaryR
 
 // The exact geometry behind a result, for drawings.
 struct PlaneGeometry {
-  std::vector<kernel::Ring> source;   // convex pieces in front of x, whole
-  std::vector<kernel::Ring> clipped;  // above the horizon
+  std::vector<Ring> source;   // convex pieces in front of x, whole
+  std::vector<Ring> clipped;  // above the horizon
   std::vector<Occluder> occluders;
   std::optional<PlaneFrame> frame;
   std::vector<RegionLoop> visible;  // in the frame
@@ -123,14 +123,13 @@ enum class ClipResult {
 
 // Keeps the part of `ring` with normal . t >= 0. Corners constructed by the cut are directions only: positive
 // combinations of two corners, at any scale.
-ClipResult clip(kernel::Ring& ring, const kernel::Direction& normal);
+ClipResult clip(Ring& ring, const Direction& normal);
 
 // The direction in which the segment from a (at signed distance da) to b (at db, of the other sign) meets the plane:
 // a |db| + b |da|, with common factors divided out.
-kernel::Direction crossing(const kernel::ExactVec3& a, const kernel::Integer& da, const kernel::ExactVec3& b,
-                           const kernel::Integer& db);
+Direction crossing(const ExactVec3& a, const Integer& da, const ExactVec3& b, const Integer& db);
 
 // Inward normals of the planes through x and each side of the ring.
-std::vector<kernel::Direction> side_planes(const kernel::Ring& ring);
+std::vector<Direction> side_planes(const Ring& ring);
 
 }  // namespace exactff::visibility

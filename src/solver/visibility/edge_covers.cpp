@@ -34,8 +34,7 @@ int ExactParameters::compare(Outlines& outlines, EdgeId edge, const Parameter& p
   const EdgeParameter &a = crossing(outlines, edge, p.line), &b = crossing(outlines, edge, q.line);
   product_p_ = a.m * b.l;
   product_q_ = b.m * a.l;
-  const int order = cmp(product_p_, product_q_);
-  return order < 0 ? -1 : order > 0 ? 1 : 0;
+  return kernel::compare(product_p_, product_q_);
 }
 
 // --- Edge covers ---
@@ -72,9 +71,8 @@ void EdgeCovers::cut_exactly(EdgeId edge_id, EdgeId line, int& sign_a, int& sign
 }
 
 bool EdgeCovers::lies_left(const Edge& edge, OutlineId outline) {
-  const Outline& o = outlines_.outline(outline);
-  for (EdgeId f = o.first; f < o.first + o.count; ++f) {
-    const int side = outlines_.side(edge, outlines_.edge(f).a);
+  for (const Edge& other : outlines_.edges_of(outlines_.outline(outline))) {
+    const int side = outlines_.side(edge, other.a);
     if (side != 0) return side > 0;
   }
   return true;  // an outline without area: impossible

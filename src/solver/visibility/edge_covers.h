@@ -58,7 +58,7 @@ class ExactParameters {
   std::deque<Stored> stored_;  // the first count_; the rest is spare memory
   std::size_t count_ = 0;
   std::vector<std::uint32_t> stored_at_;  // into stored_, for every line and four edges; may be stale or another edge's
-  kernel::Integer product_p_, product_q_;  // scratch
+  Integer product_p_, product_q_;         // scratch
 };
 
 // --- Edge lanes ---
@@ -256,6 +256,23 @@ class EdgeCovers {
     const double difference = p.value - q.value, error = p.error + q.error;
     if (std::abs(difference) > error) return difference > 0.0 ? 1 : -1;
     return p.line == q.line ? 0 : exact_.compare(outlines_, edge, p, q);
+  }
+  // What both hold: empty unless it ends after its beginning. Of equal ends, those of the first.
+  [[nodiscard]] Interval common(EdgeId edge, const Interval& a, const Interval& b) {
+    return {compare(edge, a.begin, b.begin) >= 0 ? a.begin : b.begin, compare(edge, a.end, b.end) <= 0 ? a.end : b.end};
+  }
+  [[nodiscard]] bool is_empty(EdgeId edge, const Interval& a) { return compare(edge, a.begin, a.end) >= 0; }
+  // Calls visit(interval) for what is left of an interval without others, which are in order of their beginnings.
+  template <class Visit>
+  EXACTFF_INLINE void for_each_rest(EdgeId edge, const Interval& whole, std::span<const Interval> others,
+                                    const Visit& visit) {
+    const Parameter* reached = &whole.begin;
+    for (const Interval& other : others) {
+      if (compare(edge, other.begin, whole.end) >= 0) break;
+      if (compare(edge, other.begin, *reached) > 0) visit(Interval{*reached, other.begin});
+      if (compare(edge, other.end, *reached) > 0) reached = &other.end;
+    }
+    if (compare(edge, *reached, whole.end) < 0) visit(Interval{*reached, whole.end});
   }
   // By their beginnings.
   EXACTFF_INLINE void sort(EdgeId edge, std::vector<Interval>& intervals) {

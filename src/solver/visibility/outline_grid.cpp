@@ -9,7 +9,6 @@
 
 namespace exactff::visibility {
 
-using kernel::Approx3;
 using kernel::cross;
 using kernel::dot;
 using Edge = Outlines::Edge;
@@ -116,10 +115,7 @@ void OutlineGrid::project(const Outlines& outlines) {
 }
 
 bool OutlineGrid::is_ahead(const Outlines& outlines, const Outline& outline) const {
-  for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
-    if (!images_[outlines.edge(id).a].ahead) return false;
-  }
-  return true;
+  return std::ranges::all_of(outlines.edges_of(outline), [&](const Edge& edge) { return images_[edge.a].ahead; });
 }
 
 void OutlineGrid::find_bounds(const Outlines& outlines) {
@@ -131,8 +127,8 @@ void OutlineGrid::find_bounds(const Outlines& outlines) {
       continue;
     }
     ImageBounds bounds;
-    for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
-      const Image& image = images_[outlines.edge(id).a];
+    for (const Edge& edge : outlines.edges_of(outline)) {
+      const Image& image = images_[edge.a];
       bounds.u.include(image.u);
       bounds.v.include(image.v);
     }

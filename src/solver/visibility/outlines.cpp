@@ -9,20 +9,12 @@
 
 namespace exactff::visibility {
 
-using kernel::Approx3;
-using kernel::ExactVec3;
-using kernel::Integer;
-using kernel::ScaledVec3;
-
 namespace {
-
-constexpr double kSideError = 0x1p-46;
 
 double size_of(const Approx3& t) {
   const double largest = kernel::max_norm(t);
-  const bool usable = largest >= 0x1p-300 && largest <= 0x1p300;  // false for NaN
-  const double sum = t.x + t.y + t.z;                             // NaN if a component is; std::max may miss it
-  return usable && sum == sum ? largest : std::numeric_limits<double>::quiet_NaN();
+  const double sum = t.x + t.y + t.z;  // NaN if a component is; std::max may miss it
+  return kernel::is_moderate(largest) && sum == sum ? largest : std::numeric_limits<double>::quiet_NaN();
 }
 
 bool scaled_safely(double from, double to) { return from == 0.0 || std::abs(to) >= std::numeric_limits<double>::min(); }
@@ -131,7 +123,7 @@ EXACTFF_INLINE Outlines::Edge Outlines::edge_between(CornerId a, CornerId b, Out
           b,
           outline,
           {q.y * p.z - q.z * p.y, q.z * p.x - q.x * p.z, q.x * p.y - q.y * p.x},
-          kSideError * corners_[a].size * corners_[b].size};
+          kernel::kTripleError * corners_[a].size * corners_[b].size};
 }
 
 Outlines::Edge Outlines::line_through(CornerId a, CornerId b) const { return edge_between(a, b, kNone); }
@@ -183,9 +175,26 @@ void Outlines::set_exact_height(Integer& result, const Edge& edge, CornerId t) {
   set_dot(result, edge_normal_, exact(t));
 }
 
+bool Outlines::are_beside(OutlineId id, std::span<const CornerId> corners) const {
+  return std::ranges::any_of(edges_of(outlines_[id]), [&](const Edge& side) {
+    return std::ranges::all_of(corners, [&](CornerId corner) {
+      const Height h = height(side, corner);
+      return h.value < -h.error;
+    });
+  });
+}
+
+bool Outlines::cover(OutlineId by, std::size_t count, int least_side) {
+  const Outline& last = outlines_[count - 1];
+  return std::ranges::all_of(edges_of(outlines_[by]), [&](const Edge& line) {
+    return std::ranges::all_of(edges().first(last.first + last.count),
+                               [&](const Edge& edge) { return side(line, edge.a) >= least_side; });
+  });
+}
+
 int Outlines::side_by_filter(const Approx3& normal, CornerId t) const {
   const Corner& c = corners_[t];
-  return c.size == c.size ? kernel::sign_of_dot(normal, c.t) : kernel::kUncertain;
+  return c.size == c.size ? kernel::sign_of_dot(normal, c.t) : kUncertain;
 }
 
 // True if two coordinates of three vertices agree: the vertices then lie on one line, and x with them in one plane.
@@ -204,7 +213,7 @@ int Outlines::side(const Edge& edge, CornerId t) {
   if (h.value < -h.error) return -1;
   if (t == edge.a || t == edge.b || are_on_axis_line(edge, t)) return 0;
   set_exact_height(height_, edge, t);
-  return kernel::sign(height_);
+  return sign(height_);
 }
 
 }  // namespace exactff::visibility

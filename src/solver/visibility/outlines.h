@@ -8,11 +8,9 @@
 //   l : m = |F . b| : |F . a|,   F the inward normal of f.
 //
 // Filters. A corner is represented by a triple of doubles, each within relative error 2u, u = 2^-53, and by the largest
-// magnitude |t| among them. With c_i = b_j a_k - b_k a_j in doubles, each product errs by 5u and their difference by u
-// more of its magnitude: in all by 12u |a||b|; |c_i| <= 2 |a||b|. Then N . t is a sum of three products, each of which
-// errs by (12u + 2 (2u + u)) |a||b||t| = 18u |a||b||t|, and two sums of at most 6 |a||b||t|, so that the total is below
-// 54u + 12u = 66u < 2^-46 |a||b||t|. Corners are scaled so that those of the source are of order 1; a corner whose |t|
-// is not within [2^-300, 2^300], or whose components do not survive the scaling, makes every filter decline, so that
+// magnitude |t| among them. The components of N then err by less than kCrossError |a||b|, and N . t by less than
+// kTripleError |a||b||t| (kernel/filter.h). Corners are scaled so that those of the source are of order 1; a corner
+// whose |t| is not moderate, or whose components do not survive the scaling, makes every filter decline, so that
 // underflow does not matter.
 #pragma once
 
@@ -41,15 +39,26 @@ namespace exactff::visibility {
 // Eq. (4) depends on nothing else, so any method that finds the pieces can supply them.
 
 struct EdgeParameter {
-  kernel::Integer l;
-  kernel::Integer m;
+  Integer l;
+  Integer m;
 };
 
 struct BoundaryPiece {
-  kernel::ExactVec3 a;
-  kernel::ExactVec3 b;
+  ExactVec3 a;
+  ExactVec3 b;
   EdgeParameter begin{1, 0};
   EdgeParameter end{0, 1};
+
+  // The directions in which it begins and ends.
+  [[nodiscard]] ExactVec3 from() const { return at(begin); }
+  [[nodiscard]] ExactVec3 to() const { return at(end); }
+
+  // Of a parameter of the edge.
+  [[nodiscard]] ExactVec3 at(const EdgeParameter& t) const {
+    if (sign(t.m) == 0 && t.l == 1) return a;
+    if (sign(t.l) == 0 && t.m == 1) return b;
+    return a * t.l + b * t.m;
+  }
 };
 
 // --- Outlines ---
@@ -67,14 +76,14 @@ struct Height {
 class Outlines {
  public:
   struct Corner {
-    kernel::Approx3 t;
+    Approx3 t;
     double size = 0.0;  // largest magnitude; NaN where filters must decline
   };
   struct Edge {
     CornerId a = 0, b = 0;
     OutlineId outline = 0;
-    Vec3 normal;         // N within 2^-49 |a||b|: no component's sign is certain
-    double error = 0.0;  // 2^-46 |a||b|
+    Vec3 normal;         // N: no component's sign is certain
+    double error = 0.0;  // kTripleError |a||b|
   };
   using LineBits = std::uint32_t;  // a bit for each of an outline's first edges
   static constexpr std::size_t kLineBits = 32;
@@ -92,10 +101,10 @@ class Outlines {
   void start(const Scene& scene, const Vec3& x, double unit);
   // The planes that add_crossing refers to. The exact normal of the source's plane must outlive their use.
   enum class Plane : std::uint32_t { kSource, kHorizon };
-  void set_source_plane(const kernel::ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point);
+  void set_source_plane(const ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point);
   void set_horizon(const Vec3& normal);
   // A further plane, through a point.
-  [[nodiscard]] Plane add_plane(const kernel::ExactVec3& normal, const Vec3& point);
+  [[nodiscard]] Plane add_plane(const ExactVec3& normal, const Vec3& point);
 
   // Replaces the contents of `corners` by the corners at these vertices.
   void corners_of(std::span<const std::uint32_t> vertices, std::vector<CornerId>& corners);
@@ -122,6 +131,9 @@ class Outlines {
   [[nodiscard]] std::span<const Edge> edges() const { return edges_; }
   [[nodiscard]] std::span<const Outline> outlines() const { return outlines_; }
   [[nodiscard]] const Edge& edge(EdgeId id) const { return edges_[id]; }
+  [[nodiscard]] std::span<const Edge> edges_of(const Outline& outline) const {
+    return edges().subspan(outline.first, outline.count);
+  }
   [[nodiscard]] const Outline& outline(OutlineId id) const { return outlines_[id]; }
   [[nodiscard]] const Corner& corner(CornerId id) const { return corners_[id]; }
   [[nodiscard]] std::size_t corner_count() const { return corners_.size(); }
@@ -151,16 +163,20 @@ class Outlines {
     const Corner& c = corners_[t];
     return {edge.normal.x * c.t.x + edge.normal.y * c.t.y + edge.normal.z * c.t.z, edge.error * c.size};
   }
+  // Whether all corners are certainly outside one line of the outline.
+  [[nodiscard]] bool are_beside(OutlineId id, std::span<const CornerId> corners) const;
+  // Whether each corner of the first `count` outlines lies on this side of each line, or further inside.
+  [[nodiscard]] bool cover(OutlineId by, std::size_t count, int least_side);
   // -1, 0, +1: outside, on, inside the line of the edge.
   [[nodiscard]] int side(const Edge& edge, CornerId t);
   // Sign of normal . t, or kUncertain.
-  [[nodiscard]] int side_by_filter(const kernel::Approx3& normal, CornerId t) const;
+  [[nodiscard]] int side_by_filter(const Approx3& normal, CornerId t) const;
 
-  [[nodiscard]] const kernel::ExactVec3& exact(CornerId id) { return scaled(id).v; }
+  [[nodiscard]] const ExactVec3& exact(CornerId id) { return scaled(id).v; }
   // exact(id) * 2^exponent(id) is what the doubles of the corner approximate.
   [[nodiscard]] long exponent(CornerId id) { return scaled(id).exponent; }
   // The exact height of a corner above an edge's line. Reuses the memory of `result`.
-  void set_exact_height(kernel::Integer& result, const Edge& edge, CornerId t);
+  void set_exact_height(Integer& result, const Edge& edge, CornerId t);
 
  private:
   // Where a corner comes from: the vertex p, or where the segment from p to q crosses a plane.
@@ -173,17 +189,17 @@ class Outlines {
     [[nodiscard]] bool is_vertex() const { return q == kNone; }
   };
   CornerId corner_of_vertex(std::uint32_t any_vertex);
-  CornerId add_corner(const kernel::Approx3& t, double size, const Origin& origin);
+  CornerId add_corner(const Approx3& t, double size, const Origin& origin);
   static constexpr std::size_t kNamedPlanes = 2;
   struct FurtherPlane {
     PlaneCrossings crossings;
-    kernel::ExactVec3 normal;
+    ExactVec3 normal;
   };
   [[nodiscard]] PlaneCrossings& crossings(Plane plane) {
     const auto index = static_cast<std::size_t>(plane);
     return index < kNamedPlanes ? crossings_[index] : further_planes_[index - kNamedPlanes].crossings;
   }
-  [[nodiscard]] const kernel::ExactVec3& exact_normal(Plane plane) const {
+  [[nodiscard]] const ExactVec3& exact_normal(Plane plane) const {
     const auto index = static_cast<std::size_t>(plane);
     return index >= kNamedPlanes     ? further_planes_[index - kNamedPlanes].normal
            : plane == Plane::kSource ? *normal_
@@ -192,7 +208,7 @@ class Outlines {
   [[nodiscard]] Edge edge_between(CornerId a, CornerId b, OutlineId outline) const;
   [[nodiscard]] bool are_on_axis_line(const Edge& edge, CornerId t) const;
   // Computed at first use and kept in exact_.
-  [[nodiscard]] const kernel::ScaledVec3& scaled(CornerId id);
+  [[nodiscard]] const ScaledVec3& scaled(CornerId id);
 
   const Scene* scene_ = nullptr;
   std::span<const Vec3> vertices_;
@@ -201,23 +217,23 @@ class Outlines {
   int scale_exponent_ = 0;
   double scale_ = 1.0;
   std::vector<Corner> corners_;
-  std::vector<Origin> origins_;           // by corner
-  std::deque<kernel::ScaledVec3> exact_;  // the first exact_count_; the rest is spare memory
+  std::vector<Origin> origins_;   // by corner
+  std::deque<ScaledVec3> exact_;  // the first exact_count_; the rest is spare memory
   std::size_t exact_count_ = 0;
-  kernel::ExactVec3 edge_normal_;                 // of the edge last queried exactly,
+  ExactVec3 edge_normal_;                         // of the edge last queried exactly,
   CornerId normal_a_ = kNone, normal_b_ = kNone;  // from a to b
   std::vector<FineDirection> fine_;
   std::array<PlaneCrossings, kNamedPlanes> crossings_;  // by plane
   std::deque<FurtherPlane> further_planes_;             // the first further_count_; the rest is spare memory
   std::size_t further_count_ = 0;
-  const kernel::ExactVec3* normal_ = nullptr;  // of the source's plane
-  kernel::ScaledVec3 horizon_;                 // its normal
+  const ExactVec3* normal_ = nullptr;  // of the source's plane
+  ScaledVec3 horizon_;                 // its normal
   std::vector<Edge> edges_;
   std::vector<Outline> outlines_;
   std::vector<std::pair<std::uint32_t, CornerId>> corner_of_vertex_;  // (run, corner) for every vertex of the scene
   std::uint32_t run_ = 0;
   bool shared_corners_ = false;
-  kernel::Integer height_;  // scratch
+  Integer height_;  // scratch
 };
 
 }  // namespace exactff::visibility

@@ -6,8 +6,6 @@
 
 namespace exactff::visibility {
 
-using kernel::Rational;
-
 View::View(const Scene& scene_in, const Receiver& receiver)
     : scene(scene_in),
       x(receiver.point),
@@ -15,7 +13,7 @@ View::View(const Scene& scene_in, const Receiver& receiver)
       own(scene_in, receiver),
       is_buried(buried_under(scene_in, receiver).has_value()) {}
 
-kernel::Direction View::normal() const { return kernel::make_direction(kernel::exact_vector(n).v); }
+Direction View::normal() const { return kernel::make_direction(kernel::exact_vector(n).v); }
 
 bool may_occlude(const View& view, const SourcePlane& plane, const BoundaryRequest& request, PanelId panel) {
   const Panels& panels = *plane.scene_panels;
@@ -31,10 +29,18 @@ bool may_occlude(const View& view, const SourcePlane& plane, const BoundaryReque
   return only == nullptr || std::binary_search(only->begin(), only->end(), piece.face);
 }
 
+Ring ring_of(const View& view, std::uint32_t piece) {
+  Ring ring;
+  for (const std::uint32_t corner : view.scene.corners(view.scene.pieces()[piece])) {
+    ring.push_back(kernel::make_direction(kernel::exact_difference(view.scene.vertices()[corner], view.x).v));
+  }
+  return ring;
+}
+
 // The frame's (p, q) are the projected coordinates divided by h, so areas must be multiplied by h^2 before they are
 // compared.
 Rational share_of_source(const View& view, const SourcePlane& plane, const PlaneFrame& frame, const Rational& doubled) {
-  const kernel::ScaledVec3 s = kernel::exact_difference(plane.point, view.x);
+  const ScaledVec3 s = kernel::exact_difference(plane.point, view.x);
   const Rational h = kernel::times_power_of_two(dot(plane.normal.exact, s.v), s.exponent);
   return doubled / 2 * frame.unit_area() * h * h / union_area(view.scene, plane).area;
 }

@@ -35,7 +35,7 @@ struct View {
 
   [[nodiscard]] bool is_own(std::uint32_t piece) const { return own.contains(piece); }
   // The normal as a direction in integers, which are seldom needed.
-  [[nodiscard]] kernel::Direction normal() const;
+  [[nodiscard]] Direction normal() const;
 };
 
 // Whether the edge engine searches for the silhouettes of meshes (silhouettes.h) or compares outlines.
@@ -96,8 +96,8 @@ using Cutters = boost::container::small_vector<FaceId, 1>;
 struct PlaneVisibility {
   PlaneRecord record;  // without its faces, which are the plane's
   VisibleBoundary boundary;
-  std::optional<kernel::Rational> fraction;  // visible area / whole unclipped area of the union, in [0, 1]
-  Cutters cutters;                           // ascending
+  std::optional<Rational> fraction;  // visible area / whole unclipped area of the union, in [0, 1]
+  Cutters cutters;                   // ascending
 };
 
 // For both engines: calls visit(piece, inside) for every piece that may lie in the shaft, until one call returns false;
@@ -131,14 +131,16 @@ void for_each_panel(const PlaneQuery& query, const HalfSpaceGroups& shaft, const
   const auto vertices = view.scene.vertices();
   const auto vertex = [&](int f) -> const Vec3& { return vertices[piece.frame[f]]; };
   const auto rounded = [&](int f) { return kernel::approx_difference(vertex(f), view.x); };
-  const kernel::Approx3 a = rounded(0), b = rounded(1), c = rounded(2);
-  if (const int filtered = kernel::sign_of_det(a, b, c); filtered != kernel::kUncertain) return filtered;
+  const Approx3 a = rounded(0), b = rounded(1), c = rounded(2);
+  if (const int filtered = kernel::sign_of_det(a, b, c); filtered != kUncertain) return filtered;
   const bool across_axis = (a.x == 0.0 && b.x == 0.0 && c.x == 0.0) || (a.y == 0.0 && b.y == 0.0 && c.y == 0.0) ||
                            (a.z == 0.0 && b.z == 0.0 && c.z == 0.0);
   return across_axis ? 0 : kernel::orientation(view.x, vertex(0), vertex(1), vertex(2));
 }
+// As x sees the front of the piece.
+[[nodiscard]] Ring ring_of(const View& view, std::uint32_t piece);
 // Twice an area in the frame's unit square, as a share of the whole unclipped source in the plane.
-[[nodiscard]] kernel::Rational share_of_source(const View& view, const SourcePlane& plane, const PlaneFrame& frame,
-                                               const kernel::Rational& doubled);
+[[nodiscard]] Rational share_of_source(const View& view, const SourcePlane& plane, const PlaneFrame& frame,
+                                       const Rational& doubled);
 
 }  // namespace exactff::visibility

@@ -22,16 +22,6 @@ using kernel::sign;
 
 // --- Plane frame ---
 
-namespace {
-
-Rational ratio(const Integer& numerator, const Integer& denominator) {
-  Rational result(numerator, denominator);
-  result.canonicalize();
-  return result;
-}
-
-}  // namespace
-
 PlaneFrame::PlaneFrame(const ExactVec3& front, std::span<const Ring> rings) : m_(front), k_(longest_axis(front)) {
   kernel::negate(m_);
   i_ = (k_ + 1) % 3;
@@ -53,7 +43,7 @@ PlaneFrame::PlaneFrame(const ExactVec3& front, std::span<const Ring> rings) : m_
 
 Point2 PlaneFrame::affine(const ExactVec3& t) const {
   const Integer depth = dot(m_, t);
-  return {ratio(t[i_], depth), ratio(t[j_], depth)};
+  return {kernel::ratio(t[i_], depth), kernel::ratio(t[j_], depth)};
 }
 
 Point2 PlaneFrame::to_plane(const ExactVec3& direction) const {

@@ -13,7 +13,6 @@
 
 namespace exactff::visibility {
 
-using kernel::Approx3;
 using Edge = Outlines::Edge;
 
 namespace {
@@ -187,7 +186,6 @@ Approx3 between(const Outlines::Corner& a, const Outlines::Corner& b, double t) 
 
 namespace {
 
-// Two directions about orthogonal to d and to each other, with components of at most 1.
 // Two directions about orthogonal to d and to each other, with components of at most 1.
 void find_axes(const Approx3& d, Approx3& u, Approx3& v) {
   const double x = std::abs(d.x), y = std::abs(d.y), z = std::abs(d.z);
@@ -661,16 +659,9 @@ bool SilhouetteWalk::trace(std::uint32_t index) {
 void SilhouetteWalk::keep(const Stretch& stretch, int kind, const Parameter& begin, const Parameter& end) {
   if (kind == 0) return;
   const EdgeId edge = stretch.edge;
-  const auto add = [&](const Parameter& from, const Parameter& to) {
-    if (compare(edge, from, to) < 0) parts_.push_back(kind > 0 ? Part{edge, from, to} : Part{edge, to, from});
-  };
-  Parameter reached = begin;
-  for (const Interval& off : off_) {
-    if (compare(edge, off.begin, end) >= 0) break;
-    add(reached, off.begin);
-    if (compare(edge, off.end, reached) > 0) reached = off.end;
-  }
-  add(reached, end);
+  for_each_rest(edge, {begin, end}, off_, [&](const Interval& rest) {
+    parts_.push_back(kind > 0 ? Part{edge, rest.begin, rest.end} : Part{edge, rest.end, rest.begin});
+  });
 }
 
 }  // namespace exactff::visibility

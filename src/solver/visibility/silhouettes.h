@@ -88,7 +88,7 @@ class Silhouettes {
 // Counts occluders by a ray: those that x sees on both sides of a point of an edge. By filters alone.
 
 // A direction from x: the point of an edge with a parameter.
-[[nodiscard]] kernel::Approx3 between(const Outlines::Corner& a, const Outlines::Corner& b, double t);
+[[nodiscard]] Approx3 between(const Outlines::Corner& a, const Outlines::Corner& b, double t);
 
 class OccluderCount {
  public:
@@ -205,7 +205,7 @@ class SilhouetteWalk : public EdgeCovers {
   std::vector<std::uint32_t> waiting_;
   std::vector<std::uint8_t> done_;  // by stretch
   std::vector<Image> images_;
-  kernel::Approx3 axis_u_, axis_v_, ahead_;
+  Approx3 axis_u_, axis_v_, ahead_;
   std::uint64_t next_poll_ = 0;
   // Of the current stretch.
   std::vector<Event> along_;

@@ -1,69 +1,32 @@
 // The faces of a source that lie in one oriented plane. They are treated together, as their union.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "exactff/geometry.h"
 #include "exactff/scene.h"
-#include "kernel/double_double.h"
 #include "kernel/filter.h"
 #include "kernel/numbers.h"
+#include "kernel/plane_crossing.h"
 #include "scene/panels.h"
 
 namespace exactff::visibility {
 
-// --- Plane crossings ---
-
-// The point where the segment between two vertices crosses a plane (the source's plane or the horizon), as a
-// direction from x.
-//
-// With g(y) = N . (y - s), s a point of the plane, N its normal, and g(p), g(q) of different signs, the point lies in
-// direction
-//   (p - x) |g(q)| + (q - x) |g(p)|.
-// It is computed in double-double arithmetic with an error bound first, and exactly where that declines or on request.
-
+using kernel::Approx3;
+using kernel::Direction;
+using kernel::ExactVec3;
+using kernel::fine_normal;
 using kernel::FineDirection;
-
-// A plane's normal N divided by 2^bit_length(N), so that its largest component is in [1/2, 1).
-using FineNormal = std::array<kernel::double_double::Bounded, 3>;
-[[nodiscard]] FineNormal fine_normal(const kernel::ExactVec3& normal);
-// The same for the integers of exact_vector(normal).
-[[nodiscard]] FineNormal fine_normal(const Vec3& normal);
-
-class PlaneCrossings {
- public:
-  // Lengths are multiplied by 2^scale_exponent, which should bring them to the order of 1.
-  void start(const Vec3& x, const FineNormal& normal, const Vec3& point, int scale_exponent);
-
-  // Times 2^-bit_length(N) 2^exponent, so that the largest component is in [1/2, 1]. Each hi is within relative error
-  // 2u, u = 2^-53, of the true component and zero only where that component is zero.
-  struct Fine {
-    FineDirection direction;
-    int exponent = 0;
-  };
-  [[nodiscard]] std::optional<Fine> fine(const Vec3& p, const Vec3& q) const;
-
-  // The exact crossing. Reuses the memory of `result`. v 2^exponent is the value that a Fine with `fine_exponent`
-  // approximates.
-  void set_exact(kernel::ScaledVec3& result, const Vec3& p, const Vec3& q, const kernel::ExactVec3& normal,
-                 long fine_exponent);
-
- private:
-  Vec3 x_, point_;
-  FineNormal normal_{};
-  int zero_axis_ = -1;  // along which all crossings are 0; -1: none
-  int scale_exponent_ = 0;
-  double scale_ = 1.0;
-  // Scratch of set_exact.
-  kernel::ScaledVec3 t_p_, t_q_, d_p_, d_q_;
-  kernel::Integer g_p_, g_q_;
-};
-
-// --- Source plane ---
+using kernel::FineNormal;
+using kernel::Integer;
+using kernel::kUncertain;
+using kernel::PlaneCrossings;
+using kernel::Rational;
+using kernel::Ring;
+using kernel::ScaledVec3;
+using kernel::sign;
 
 struct SourcePlane {
   const Panels* scene_panels = nullptr;
@@ -73,7 +36,7 @@ struct SourcePlane {
   // Pieces in the same plane that hide parts of it: those that bury them (scene/contacts.h), and `elsewhere`.
   std::vector<std::uint32_t> covers;
   std::vector<std::uint32_t> elsewhere;  // pieces of the source in another SourcePlane, where what they cover counts
-  kernel::Direction normal;              // front, primitive integers
+  Direction normal;                      // front, primitive integers
   FineNormal fine_normal;                // the same, for PlaneCrossings
   Vec3 point;                            // a vertex in the plane
   Vec3 second, third;                    // with `point`, three vertices that run counter-clockwise seen from the front
@@ -91,7 +54,7 @@ int side_of(const SourcePlane& plane, const Vec3& x);
 
 // Area of the union of the faces, projected along the axis of the normal's largest component; exact.
 struct ProjectedArea {
-  kernel::Rational area;
+  Rational area;
   int axis = 0;
 };
 ProjectedArea union_area(const Scene& scene, const SourcePlane& plane);

@@ -7,9 +7,6 @@
 
 namespace exactff::visibility {
 
-using kernel::Approx3;
-using kernel::kUncertain;
-
 // --- Side planes ---
 
 using namespace kernel::lanes;
@@ -41,7 +38,7 @@ EXACTFF_CLONES Sides sides_of(std::span<const SidePlane> planes, const FourCorne
 // --- Piece clip ---
 
 ClippedSource PieceClip::add_source() {
-  const kernel::Approx3 s = kernel::approx_difference(plane_.point, view_.x);
+  const Approx3 s = kernel::approx_difference(plane_.point, view_.x);
   outlines_.start(view_.scene, view_.x, std::max({std::abs(s.x), std::abs(s.y), std::abs(s.z)}));
   outlines_.set_source_plane(plane_.normal.exact, plane_.fine_normal, plane_.point);
   const Panels& all = *plane_.scene_panels;
@@ -133,12 +130,12 @@ std::span<const Outlines::Edge> SourceShaft::edges() const {
   return outlines_.edges().subspan(outline.first, outline.count);
 }
 
-// The components of an edge's normal err by less than 12u |a||b| = 2^-49.4 |a||b| (outlines.h).
 void SourceShaft::make_half_spaces() {
   std::vector<HalfSpace>& half_spaces = memory_.half_spaces;
   half_spaces.clear();
   for (const Outlines::Edge& edge : edges()) {
-    half_spaces.push_back({edge.normal, 0.0, 0x1p-49 * outlines_.corner(edge.a).size * outlines_.corner(edge.b).size});
+    half_spaces.push_back(
+        {edge.normal, 0.0, kernel::kCrossError * outlines_.corner(edge.a).size * outlines_.corner(edge.b).size});
   }
   const Approx3& front = query_.plane.normal.approx;
   half_spaces.push_back({{-front.x, -front.y, -front.z}, 0.0});
@@ -162,11 +159,8 @@ void SourceShaft::narrow() {
   memory_.groups.set(half_spaces);
 }
 
-// With N and s the normal and a point of the source's plane, as seen from x, the components of N, s and t are known to
-// within a relative error of 2u, u = 2^-53, |N| <= 1. The two sums N . t and N . s err by 7u of the magnitudes of their
-// terms, at most 3 |t| and 3 |s|, and their difference by u of at most 3 (|t| + |s|) more: in all by
-// 24u (|t| + |s|) < 2^-48 (|t| + |s|).
 void SourceShaft::make_side_planes() {
+  constexpr double kError = kernel::kDotDifferenceError;
   std::vector<SidePlane>& planes = memory_.side_planes;
   planes.clear();
   const Approx3& front = query_.plane.normal.approx;
@@ -174,11 +168,10 @@ void SourceShaft::make_side_planes() {
   const Approx3 d = kernel::approx_difference(query_.plane.point, query_.view.x);
   const Approx3 s{scale * d.x, scale * d.y, scale * d.z};  // scaled first: products of unscaled numbers may underflow
   const double size = std::max({std::abs(s.x), std::abs(s.y), std::abs(s.z)});
-  const bool usable = size >= 0x1p-300 && size <= 0x1p300;
   const double offset = front.x * s.x + front.y * s.y + front.z * s.z;
-  planes.push_back(
-      {to_vec3(front), offset, 0x1p-48, usable ? 0x1p-48 * size : std::numeric_limits<double>::infinity()});
-  planes.push_back({{-front.x, -front.y, -front.z}, 0.0, 0x1p-48, 0.0});
+  planes.push_back({to_vec3(front), offset, kError,
+                    kernel::is_moderate(size) ? kError * size : std::numeric_limits<double>::infinity()});
+  planes.push_back({{-front.x, -front.y, -front.z}, 0.0, kError, 0.0});
   if (!query_.request.culls()) return;
   for (const Outlines::Edge& edge : edges()) planes.push_back({edge.normal, 0.0, edge.error, 0.0});
 }

@@ -7,8 +7,6 @@
 
 namespace exactff::visibility {
 
-using kernel::ExactVec3;
-
 void VisibleArcs::clear() {
   sections_.clear();
   arcs_.clear();
@@ -112,7 +110,7 @@ ExactVec3 ArcSection::exact(const ArcCorner& corner) const {
   const bool on_horizon = corner.plane == static_cast<std::uint32_t>(Outlines::Plane::kHorizon);
   PlaneCrossings crossings;
   crossings.start(x, plane->fine_normal, on_horizon ? x : plane->point, 0);
-  kernel::ScaledVec3 result;
+  ScaledVec3 result;
   crossings.set_exact(result, vertices[corner.p], vertices[corner.q],
                       on_horizon ? kernel::exact_vector(n).v : plane->normal.exact, 0);
   return std::move(result.v);
@@ -142,6 +140,11 @@ kernel::RationalVec3 ExactArcs::point_at(std::uint32_t index) const {
   if (corner.is_vertex()) return to_rational(seen_.vertices[corner.p]) - x_;
   const kernel::RationalVec3 normal = to_rational(seen_.plane->normal.exact), direction = to_rational(corners_[index]);
   return direction * kernel::Rational(dot(normal, to_rational(seen_.plane->point) - x_) / dot(normal, direction));
+}
+
+Vec3 point_on_line(const kernel::RationalVec3& x, const ExactVec3& t, const kernel::RationalVec3& nearness) {
+  const kernel::RationalVec3 w = kernel::to_rational(t);
+  return kernel::nearest_double(x + w * kernel::Rational(1 / dot(nearness, w)));
 }
 
 kernel::RationalVec3 ExactArcs::nearness(const Arc& arc) const {

@@ -77,14 +77,14 @@ struct ArcSection {
   std::span<const ArcLine> lines;
   std::span<const ArcCorner> corners;
   std::span<const FineDirection> fine;
-  std::span<const kernel::ExactVec3> exactly;
+  std::span<const ExactVec3> exactly;
   std::span<const BoundaryPiece> pieces;  // instead of all these, if the Booleans found it
 
   [[nodiscard]] bool empty() const { return arcs.empty() && pieces.empty(); }
   // By the edge engine, so that there is a form for arithmetic in doubles.
   [[nodiscard]] bool is_by_edges() const { return pieces.empty(); }
   // A direction from x.
-  [[nodiscard]] kernel::ExactVec3 exact(const ArcCorner& corner) const;
+  [[nodiscard]] ExactVec3 exact(const ArcCorner& corner) const;
   // Calls visit(piece) for every piece of the boundary.
   template <class Visit>
   void for_each_piece(const Visit& visit) const;
@@ -102,9 +102,13 @@ class ExactArcs {
   [[nodiscard]] kernel::RationalVec3 point_at(std::uint32_t corner) const;
 
   const ArcSection& seen_;
-  std::vector<kernel::ExactVec3> corners_;
+  std::vector<ExactVec3> corners_;
   kernel::RationalVec3 x_;
 };
+
+// The point of the line with this nearness in direction t from x, rounded once.
+[[nodiscard]] Vec3 point_on_line(const kernel::RationalVec3& x, const ExactVec3& t,
+                                 const kernel::RationalVec3& nearness);
 
 template <class Visit>
 void ArcSection::for_each_piece(const Visit& visit) const {
@@ -148,7 +152,7 @@ class VisibleArcs {
   std::vector<ArcLine> lines_;
   std::vector<ArcCorner> corners_;
   std::vector<FineDirection> fine_;
-  std::vector<kernel::ExactVec3> exact_;  // the first exact_count_; the rest is spare memory
+  std::vector<ExactVec3> exact_;  // the first exact_count_; the rest is spare memory
   std::size_t exact_count_ = 0;
   std::vector<BoundaryPiece> pieces_;
   DenseIndex line_index_, corner_index_;  // of the last section

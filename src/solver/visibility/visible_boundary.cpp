@@ -29,9 +29,6 @@
 namespace exactff::visibility {
 namespace {
 
-using kernel::Rational;
-using kernel::Ring;
-
 // --- Backs of closed surfaces ---
 
 // Which pieces of closed surfaces are left out because they show x their backs.
@@ -234,7 +231,7 @@ bool Candidates::visit(PanelId panel, bool inside) {
   }
   outlines_.set_within_lines(outline, sides.wholly_above >> SourceShaft::kSidePlanesBeforeEdges);
   // 5. Does it hide all?
-  if (search_.edges.hides_all(outline, source_count_)) return true;
+  if (outlines_.cover(outline, source_count_, 0)) return true;
   if (left_out) {
     outlines_.remove_last();
     search_.outline_panels.pop_back();
@@ -261,11 +258,6 @@ void add_if_between(const PlaneQuery& query, PanelId panel, PieceClip& clip, Pla
   clip.add_occluder(is_cut, facing);
 }
 
-bool one_hides_all(const PlaneQuery& query, std::size_t source_count, EdgeSearch& search) {
-  PlaneRecord uncounted;
-  return Candidates(query, source_count, search, uncounted).one_that_hides_all().has_value();
-}
-
 std::optional<PlaneRecord> hidden_by(std::span<const PanelId> remembered, const PlaneQuery& query, EdgeSearch& search) {
   PlaneRecord record;
   PieceClip clip(query, search.edges.outlines(), search.clip);
@@ -277,7 +269,11 @@ std::optional<PlaneRecord> hidden_by(std::span<const PanelId> remembered, const 
   }
   VisibleEdges& edges = search.edges;
   const std::size_t cover = edges.outlines().outlines().size() - source.count;
-  if (cover == 0 || !edges.all_cover(source.count) || one_hides_all(query, source.count, search)) return std::nullopt;
+  PlaneRecord uncounted;
+  if (cover == 0 || !edges.all_cover(source.count) ||
+      Candidates(query, source.count, search, uncounted).one_that_hides_all()) {
+    return std::nullopt;
+  }
   record.horizon_clipped = source.is_cut;
   record.source_joined = source.count > 1;
   record.cover_remembered = true;
@@ -321,6 +317,8 @@ class EdgeWalk {
   EdgeWalk(const PlaneQuery& query, EdgeWorkspace& workspace)
       : query_(query), work_(workspace), edges_(workspace.search.edges) {}
 
+  // Nullopt where the Booleans are the better method (visible_edges.h). Lists a cutter only where one occluder hides
+  // all.
   std::optional<PlaneVisibility> run() {
     const std::optional<Outcome> outcome = find_outcome();
     if (!outcome) return std::nullopt;
@@ -441,19 +439,12 @@ Rational EdgeWalk::fraction() {
   Rational doubled;
   result_.boundary.for_each_piece([&](const BoundaryPiece& piece) {
     kernel::poll();
-    const Point2 p = frame.to_plane(piece.a * piece.begin.l + piece.b * piece.begin.m);
-    const Point2 q = frame.to_plane(piece.a * piece.end.l + piece.b * piece.end.m);
+    const Point2 p = frame.to_plane(piece.from());
+    const Point2 q = frame.to_plane(piece.to());
     doubled += p.u * q.v - q.u * p.v;
   });
   if (!frame.keeps_orientation()) doubled = -doubled;
   return share_of_source(query_.view, query_.plane, frame, doubled);
-}
-
-// Lists a cutter only where one occluder hides all.
-// Returns nullopt where the Booleans are the better method (visible_edges.h).
-std::optional<PlaneVisibility> find_by_edges(const View& view, const SourcePlane& plane, const BoundaryRequest& request,
-                                             EdgeWorkspace& workspace) {
-  return EdgeWalk({view, plane, request}, workspace).run();
 }
 
 }  // namespace
@@ -462,7 +453,7 @@ PlaneVisibility find_visible_boundary(const View& view, const SourcePlane& plane
                                       EdgeWorkspace& workspace) {
   EXACTFF_EXPECT(!(view.n == Vec3{}));
   if (request.engine == Engine::kBoolean) return find_by_booleans(view, plane, request);
-  std::optional<PlaneVisibility> found = find_by_edges(view, plane, request, workspace);
+  std::optional<PlaneVisibility> found = EdgeWalk({view, plane, request}, workspace).run();
   if (!found) return find_by_booleans(view, plane, request);
   if (request.list_cutters) found->cutters = find_cutters(view, plane, request);
   return std::move(*found);

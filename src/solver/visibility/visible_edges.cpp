@@ -8,7 +8,6 @@
 
 namespace exactff::visibility {
 
-using kernel::Approx3;
 using kernel::dot;
 using Edge = Outlines::Edge;
 using Outline = Outlines::Outline;
@@ -150,11 +149,8 @@ bool CoverChoice::add_for(const Outlines& outlines, const Approx3& direction) {
 }
 
 bool CoverChoice::seems_hidden(const Outlines& outlines, OutlineId by, const Approx3& direction) {
-  const Outline& outline = outlines.outline(by);
-  for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
-    if (!(dot(outlines.edge(id).normal, direction) > 0.0)) return false;
-  }
-  return true;
+  return std::ranges::all_of(outlines.edges_of(outlines.outline(by)),
+                             [&](const Edge& edge) { return dot(edge.normal, direction) > 0.0; });
 }
 
 // --- Visible edges ---
@@ -231,7 +227,7 @@ bool VisibleEdges::hide(OutlineId id, std::size_t source_count) {
 }
 
 // An estimate: beside the middle of the part, on the side that seems visible.
-kernel::Approx3 VisibleEdges::direction_in_view(const Part& part, bool of_source) const {
+Approx3 VisibleEdges::direction_in_view(const Part& part, bool of_source) const {
   constexpr double kAside = 0x1p-20;
   const Edge& edge = outlines_.edge(part.edge);
   const Outlines::Corner &a = outlines_.corner(edge.a), &b = outlines_.corner(edge.b);
@@ -240,17 +236,6 @@ kernel::Approx3 VisibleEdges::direction_in_view(const Part& part, bool of_source
   const double step =
       (of_source ? kAside : -kAside) * (a.size + b.size) / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
   return {l * a.t.x + m * b.t.x + step * n.x, l * a.t.y + m * b.t.y + step * n.y, l * a.t.z + m * b.t.z + step * n.z};
-}
-
-bool VisibleEdges::hides_all(OutlineId occluder, std::size_t source_count) {
-  const Outline& o = outlines_.outline(occluder);
-  const Outline& last = outlines_.outline(static_cast<OutlineId>(source_count - 1));
-  for (EdgeId f = o.first; f < o.first + o.count; ++f) {
-    for (EdgeId s = 0; s < last.first + last.count; ++s) {
-      if (outlines_.side(outlines_.edge(f), outlines_.edge(s).a) < 0) return false;
-    }
-  }
-  return true;
 }
 
 // Of edges with the same two corners the first is kept, and only if none runs the other way. It represents the
@@ -272,22 +257,6 @@ void VisibleEdges::drop_inner_edges(std::size_t source_count) {
   }
 }
 
-EXACTFF_INLINE void VisibleEdges::keep(EdgeId id, bool reversed, const Parameter& begin, const Parameter& end) {
-  parts_.push_back(reversed ? Part{id, end, begin} : Part{id, begin, end});
-}
-
-// Keeps what is left of an allowed interval without the removed intervals, which are in order of their beginnings.
-EXACTFF_INLINE void VisibleEdges::keep_rest(EdgeId id, bool reversed, const Interval& allowed,
-                                            std::span<const Interval> removed) {
-  const Parameter* reached = &allowed.begin;
-  for (const Interval& r : removed) {
-    if (compare(id, r.begin, allowed.end) >= 0) break;
-    if (compare(id, r.begin, *reached) > 0) keep(id, reversed, *reached, r.begin);
-    if (compare(id, r.end, *reached) > 0) reached = &r.end;
-  }
-  if (compare(id, *reached, allowed.end) < 0) keep(id, reversed, *reached, allowed.end);
-}
-
 EXACTFF_INLINE void VisibleEdges::trace(Run& run, std::size_t source_count) {
   // c. The intervals that outlines cover.
   find_allowed(run, source_count);
@@ -299,7 +268,9 @@ EXACTFF_INLINE void VisibleEdges::trace(Run& run, std::size_t source_count) {
     if ((run.wanted >> k & 1U) == 0) continue;
     const EdgeId id = run.first + k;
     if (removed_[k].size() > 1) sort(id, removed_[k]);
-    keep_rest(id, !run.of_source, interval(run.left, k), removed_[k]);
+    for_each_rest(id, interval(run.left, k), removed_[k], [&](const Interval& rest) {
+      parts_.push_back(run.of_source ? Part{id, rest.begin, rest.end} : Part{id, rest.end, rest.begin});
+    });
   }
 }
 
@@ -389,15 +360,14 @@ void VisibleEdges::allow_common(Run& run, unsigned k) {
   bool some = false;
   for (const Interval& a : left_[k]) {
     for (const Interval& b : right_[k]) {
-      const Parameter& begin = compare(edge, a.begin, b.begin) >= 0 ? a.begin : b.begin;
-      const Parameter& end = compare(edge, a.end, b.end) <= 0 ? a.end : b.end;
-      if (compare(edge, begin, end) >= 0) continue;
+      const Interval both = common(edge, a, b);
+      if (is_empty(edge, both)) continue;
       if (some) {
-        removed_[k].push_back({parameter(run.left.end, k), begin});
+        removed_[k].push_back({parameter(run.left.end, k), both.begin});
       } else {
-        set(run.left.begin, k, begin);
+        set(run.left.begin, k, both.begin);
       }
-      set(run.left.end, k, end);
+      set(run.left.end, k, both.end);
       some = true;
     }
   }

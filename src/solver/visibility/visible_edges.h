@@ -62,7 +62,7 @@ class CoverChoice {
   [[nodiscard]] bool start(const Outlines& outlines, std::size_t source_count);
   // Chooses the largest occluder that seems to hide the direction. False if none does, if the direction seems hidden by
   // those already chosen, or if they are too many.
-  [[nodiscard]] bool add_for(const Outlines& outlines, const kernel::Approx3& direction);
+  [[nodiscard]] bool add_for(const Outlines& outlines, const Approx3& direction);
 
   // Chooses all occluders; no more can be added.
   void take_all(const Outlines& outlines, std::size_t source_count);
@@ -78,13 +78,13 @@ class CoverChoice {
   [[nodiscard]] bool find_largest(const Outlines& outlines, std::size_t source_count);
   void find_depths(const Outlines& outlines);
   [[nodiscard]] double size(const Outlines& outlines, OutlineId id) const;
-  [[nodiscard]] static bool seems_hidden(const Outlines& outlines, OutlineId by, const kernel::Approx3& direction);
+  [[nodiscard]] static bool seems_hidden(const Outlines& outlines, OutlineId by, const Approx3& direction);
 
-  kernel::Approx3 across_view_;
-  std::vector<kernel::Approx3> corners_, points_;  // of the source: near its corners, and elsewhere
-  std::vector<OutlineId> across_;                  // occluders that reach beyond the source's edges
-  std::vector<double> inverse_depths_;             // by corner, along the view; infinite where it is not ahead
-  std::vector<Shadow> largest_;                    // in descending order
+  Approx3 across_view_;
+  std::vector<Approx3> corners_, points_;  // of the source: near its corners, and elsewhere
+  std::vector<OutlineId> across_;          // occluders that reach beyond the source's edges
+  std::vector<double> inverse_depths_;     // by corner, along the view; infinite where it is not ahead
+  std::vector<Shadow> largest_;            // in descending order
   std::vector<OutlineId> chosen_;
   std::size_t most_ = 0;
 };
@@ -121,9 +121,6 @@ class EdgeTable {
 // A workspace: its memory is reused from one call to the next. Each of its parts has V to its left.
 class VisibleEdges : public EdgeCovers {
  public:
-  // True if the occluder covers every corner of the source, and therefore all of it.
-  [[nodiscard]] bool hides_all(OutlineId occluder, std::size_t source_count);
-
   // Requires that the first `source_count` outlines are the source's and the others are the occluders', all of positive
   // area: who adds them has clipped them, and left out what has none. Returns false, with nothing found, if the grid
   // fails to separate so many occluders and edges that the Booleans are the better method.
@@ -153,7 +150,7 @@ class VisibleEdges : public EdgeCovers {
   void poll();
   [[nodiscard]] bool cover_hides_all(std::size_t source_count);
   [[nodiscard]] bool hide(OutlineId id, std::size_t source_count);
-  [[nodiscard]] kernel::Approx3 direction_in_view(const Part& part, bool of_source) const;
+  [[nodiscard]] Approx3 direction_in_view(const Part& part, bool of_source) const;
   void trace_outline(OutlineId id, std::size_t source_count);
   void trace(Run& run, std::size_t source_count);
   void find_allowed(Run& run, std::size_t source_count);
@@ -168,9 +165,6 @@ class VisibleEdges : public EdgeCovers {
   void cut(const Run& run, OutlineId outline, LaneCuts& cuts, Outlines::LineBits skipped = 0);
   // The part of an edge that is covered; false if none.
   [[nodiscard]] bool cover(const Run& run, unsigned k, const LaneCuts& cuts, Cover& result);
-  void keep_rest(EdgeId id, bool reversed, const Interval& allowed, std::span<const Interval> removed);
-  void keep(EdgeId id, bool reversed, const Parameter& begin, const Parameter& end);
-
   void merge(EdgeId edge, std::vector<Interval>& intervals);
 
   OutlineGrid grid_;

@@ -3,13 +3,35 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
-#include "exact/workspace.h"
+#include "exact/region.h"
 #include "kernel/expect.h"
-#include "kernel/float_environment.h"
 #include "text/text_lines.h"
 
 namespace exactff::whole_view {
+
+void require_agreement(const Scene& scene, const Receiver& receiver, const ViewOptions& options,
+                       const WholeView& seen) {
+  auto next = seen.patches.begin();
+  for (std::size_t p = 0; p < scene.patches().size(); ++p) {
+    const Selection patch{.patch = static_cast<PatchId>(p), .face = {}, .scene = scene.id()};
+    const std::vector<FaceId> faces = scene.faces_of(patch);
+    const bool clear = std::ranges::any_of(faces, [&](FaceId face) { return scene.face(face).transparent; });
+    const FormFactor f = exact_form_factor(scene, receiver, {scene, patch},
+                                           {.engine = Engine::kBoth,
+                                            .measure = options.measure,
+                                            .digits = options.digits,
+                                            .precision_cap = options.precision_cap});
+    const bool is_seen = next != seen.patches.end() && next->patch == patch.patch;
+    const ViewShare found = is_seen ? next->form_factor : ViewShare{};
+    if (is_seen) ++next;
+    if (clear || f.status == Status::kNotCertified || found.status == Status::kNotCertified) continue;
+    if (found.value == f.value && found.status == f.status && found.enclosure.overlaps(f.enclosure)) continue;
+    throw std::logic_error("the sweep and the per-source solver disagree on '" + scene.name_of(patch) +
+                           "': " + found.enclosure.midpoint() + " and " + f.enclosure.midpoint());
+  }
+}
 
 // --- Source factors ---
 
@@ -195,14 +217,12 @@ Light::Light(const SourceFactors& sources, std::vector<Rgb> radiosities)
 
 Channels Light::at(const Receiver& receiver, const LightFormula& formula, const ExactOptions& options,
                    Results& results) const {
-  const kernel::StandardArithmetic arithmetic;
   sources_.find_all(receiver, options, results.at);
   return again(receiver, formula, options, results);
 }
 
 Channels Light::again(const Receiver& receiver, const LightFormula& formula, const ExactOptions& options,
                       Results& results) const {
-  const kernel::StandardArithmetic arithmetic;
   results.finer.clear();
   Channels channels;
   for (int c = 0; c < 3; ++c) {

@@ -19,7 +19,12 @@ namespace exactff::whole_view {
 // The view of another measure, from what the last call of view() found for this receiver, with the same workspace and
 // the same options otherwise. Both measures are of a sphere, or neither is.
 void measure_again(const Scene& scene, const Receiver& receiver, const ViewOptions& options, WholeView& result,
-                   Workspace& workspace);
+                   ViewWorkspace& workspace);
+
+// Computes every patch by both engines of the solver of single sources, and throws std::logic_error where a value, a
+// status or a ball of `seen` is not the same. Patches with transparent faces and values that are not certified are left
+// out. Requires that `seen` is the view of this receiver with these options.
+void require_agreement(const Scene& scene, const Receiver& receiver, const ViewOptions& options, const WholeView& seen);
 
 // --- Source factors ---
 
@@ -45,7 +50,7 @@ class SourceFactors {
   // Objects that a thread reuses from point to point.
   struct Results {
     std::vector<FormFactor> factors;  // of the last point, by source
-    Workspace workspace;
+    ViewWorkspace workspace;
     WholeView view;
   };
 

@@ -13,7 +13,9 @@
 #include <compare>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -27,7 +29,7 @@
 #include "kernel/vec.h"
 #include "text/escape.h"
 #include "text/phrases.h"
-#include "whole_view/patch_colours.h"
+#include "text/refuse.h"
 #include "whole_view/regions.h"
 
 namespace exactff {
@@ -171,6 +173,111 @@ std::optional<Pixel> Labels::place(std::uint32_t thing, const std::string& text)
   });
 }
 
+// --- Colours of patches ---
+
+// Colours for the things in the picture: things that touch can be told apart.
+
+constexpr double kApart = 0.065;
+
+// In sRGB: 8dd3c7, fccde5, 80b1d3, b3de69, ffed6f, fdb462, bc80bd, fb8072. Any two differ by more than kApart. From
+// "Set3" of C. Brewer's ColorBrewer, without those near to grey and to the others; the pale ones first.
+constexpr std::array<Rgb, 8> kList = {Rgb{0.266, 0.651, 0.571}, Rgb{0.974, 0.610, 0.783}, Rgb{0.216, 0.440, 0.651},
+                                      Rgb{0.451, 0.730, 0.141}, Rgb{1.000, 0.847, 0.159}, Rgb{0.982, 0.456, 0.122},
+                                      Rgb{0.503, 0.216, 0.509}, Rgb{0.965, 0.216, 0.168}};
+
+struct Oklab {
+  double lightness = 0.0, a = 0.0, b = 0.0;
+
+  [[nodiscard]] double chroma() const { return std::hypot(a, b); }
+};
+
+Oklab oklab(const Rgb& c) {
+  const double l = std::cbrt(0.4122214708 * c.r + 0.5363325363 * c.g + 0.0514459929 * c.b),
+               m = std::cbrt(0.2119034982 * c.r + 0.6806995451 * c.g + 0.1073969566 * c.b),
+               s = std::cbrt(0.0883024619 * c.r + 0.2817188376 * c.g + 0.6299787005 * c.b);
+  return {0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s,
+          1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
+          0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s};
+}
+
+Rgb dimmed(const Rgb& c, double by) { return {c.r * by, c.g * by, c.b * by}; }
+
+// How much two colours differ: their distance in Oklab (B. Ottosson, "A perceptual color space for image processing",
+// 2020), with half of that in lightness, which slopes change as well. Just noticeable: about 0.02.
+double difference_of_colours(const Rgb& a, const Rgb& b) {
+  const Oklab p = oklab(a), q = oklab(b);
+  return std::hypot(0.5 * (p.lightness - q.lightness), p.a - q.a, p.b - q.b);
+}
+
+// Colours are linear, from 0 to 1.
+struct Tinted {
+  Rgb own;                                   // the colour that it has if it can
+  double light = 1.0;                        // colours from the list are multiplied by this
+  std::vector<std::uint32_t> touching = {};  // indices; each pair may be listed on one side, or several times
+};
+
+// The colour of each. The first one, and then the most colourful ones, keep their own. The others do so if it differs
+// from those of all things that they touch; if not, they get the first colour of a list that does.
+class Colouring {
+ public:
+  explicit Colouring(std::span<const Tinted> things)
+      : things_(things), touching_(things.size()), colours_(things.size()) {
+    for (std::uint32_t i = 0; i < things.size(); ++i) {
+      for (const std::uint32_t j : things[i].touching) {
+        touching_[i].push_back(j);
+        touching_[j].push_back(i);
+      }
+    }
+  }
+
+  std::vector<Rgb> run() {
+    for (const std::uint32_t i : order()) colours_[i] = colour_for(i);
+    std::vector<Rgb> result;
+    for (const auto& colour : colours_) result.push_back(*colour);
+    return result;
+  }
+
+ private:
+  [[nodiscard]] std::vector<std::uint32_t> order() const {
+    std::vector<std::uint32_t> order(things_.size());
+    std::iota(order.begin(), order.end(), 0U);
+    if (!order.empty()) {
+      std::stable_sort(order.begin() + 1, order.end(), [&](std::uint32_t i, std::uint32_t j) {
+        return oklab(things_[i].own).chroma() > oklab(things_[j].own).chroma();
+      });
+    }
+    return order;
+  }
+
+  // From the nearest of the neighbours' colours that are chosen already.
+  [[nodiscard]] double apart(std::uint32_t thing, const Rgb& colour) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t other : touching_[thing]) {
+      if (other != thing && colours_[other]) least = std::min(least, difference_of_colours(colour, *colours_[other]));
+    }
+    return least;
+  }
+
+  // If none of them will do, the one that is furthest from the neighbours.
+  [[nodiscard]] Rgb colour_for(std::uint32_t thing) const {
+    Rgb best = things_[thing].own;
+    double most = apart(thing, best);
+    for (const Rgb& listed : kList) {
+      if (most >= kApart) break;
+      const Rgb colour = dimmed(listed, things_[thing].light);
+      const double found = apart(thing, colour);
+      if (found <= most) continue;
+      best = colour;
+      most = found;
+    }
+    return best;
+  }
+
+  std::span<const Tinted> things_;
+  std::vector<std::vector<std::uint32_t>> touching_;
+  std::vector<std::optional<Rgb>> colours_;
+};
+
 // --- The picture ---
 
 constexpr double kRadius = 320.0, kCentreX = 344.0, kCentreY = 392.0, kWidth = 688.0, kHeight = 760.0;
@@ -282,7 +389,7 @@ struct Thing {
 bool emits(const Scene& scene, const Thing& thing) { return !thing.back && scene.material(thing.material).emits(); }
 
 // Lamps are warm, and backs look as if in the shade.
-whole_view::Tinted tinted(const Scene& scene, const Thing& thing) {
+Tinted tinted(const Scene& scene, const Thing& thing) {
   constexpr Rgb kWarm{1.0, 0.93, 0.6};
   constexpr double kOfFronts = 0.94, kOfBacks = 0.35;
   const Material& material = scene.material(thing.material);
@@ -400,7 +507,7 @@ class Picture {
   // Of all things that are seen.
   [[nodiscard]] std::map<Thing, Rgb> colours() const {
     std::map<Thing, std::uint32_t> index;
-    std::vector<whole_view::Tinted> things{{kSky}};
+    std::vector<Tinted> things{{kSky}};
     const auto index_of_thing = [&](OutlineId outline) {
       const Thing thing = thing_of(outline);
       const auto [at, is_new] = index.try_emplace(thing, static_cast<std::uint32_t>(things.size()));
@@ -414,7 +521,7 @@ class Picture {
         things[left].touching.push_back(right);
       }
     }
-    const std::vector<Rgb> chosen = whole_view::distinct_colours(things);
+    const std::vector<Rgb> chosen = Colouring(things).run();
     std::map<Thing, Rgb> result;
     for (const auto& [thing, place] : index) result.emplace(thing, chosen[place]);
     return result;
@@ -539,9 +646,8 @@ std::string view_svg(const Scene& scene, const Receiver& receiver, const ViewPic
   const kernel::StandardArithmetic arithmetic;
   exact::check_view_arguments(scene, receiver, {}, 1);
   if (!kernel::is_finite(options.up) || kernel::max_norm(options.up) == 0.0) {
-    throw InputError({.what = "the direction that points upwards in the picture is not finite or zero",
-                      .why = "it says how to turn the picture",
-                      .suggestion = "give a vector other than zero"});
+    text::refuse("the direction that points upwards in the picture is not finite or zero",
+                 "it says how to turn the picture", "give a vector other than zero");
   }
   return Picture(scene, receiver, options).draw();
 }

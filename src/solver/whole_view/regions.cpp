@@ -60,8 +60,7 @@ void Regions::add_arc(ViewEdges& edges, std::size_t arc, const ThingOf& thing_of
   const std::uint32_t left = thing_of(sides.left), right = sides.right == kNothing ? kOpen : thing_of(sides.right);
   if (left == right) return;
   const visibility::BoundaryPiece piece = edges.exact(edges.parts()[arc]);
-  const Side side{corner_at(piece.a * piece.begin.l + piece.b * piece.begin.m),
-                  corner_at(piece.a * piece.end.l + piece.b * piece.end.m), exact::rounded(cross(piece.b, piece.a)),
+  const Side side{corner_at(piece.from()), corner_at(piece.to()), exact::rounded(cross(piece.b, piece.a)),
                   sides.on_horizon};
   sides_.push_back({left, side});
   if (sides.on_horizon) {

@@ -16,7 +16,6 @@
 #include "contour/measures.h"
 #include "exact/quick_tier.h"
 #include "exact/source_planes.h"
-#include "exact/workspace.h"
 #include "kernel/ball.h"
 #include "kernel/float_environment.h"
 #include "scene/scene.h"
@@ -33,7 +32,9 @@ using whole_view::kNothing;
 using whole_view::OutlineId;
 using whole_view::ViewEdges;
 
-struct ViewMemory : WorkspaceInside::Memory::Guest {
+}  // namespace
+
+struct ViewWorkspace::Memory {
   struct Half {
     ViewEdges edges;
     visibility::VisibleArcs arcs;
@@ -64,11 +65,20 @@ struct ViewMemory : WorkspaceInside::Memory::Guest {
   FormFactor form_factor;
 };
 
-ViewMemory& memory_of(Workspace& workspace) {
-  auto& guest = WorkspaceInside::memory(workspace).view;
-  if (!guest) guest = std::make_unique<ViewMemory>();
-  return static_cast<ViewMemory&>(*guest);
-}
+struct ViewWorkspaceInside {
+  using Memory = ViewWorkspace::Memory;
+  [[nodiscard]] static Memory& memory(ViewWorkspace& workspace) { return workspace.memory(); }
+};
+
+ViewWorkspace::ViewWorkspace() : memory_(std::make_unique<Memory>()) {}
+ViewWorkspace::ViewWorkspace(ViewWorkspace&&) noexcept = default;
+ViewWorkspace& ViewWorkspace::operator=(ViewWorkspace&&) noexcept = default;
+ViewWorkspace::~ViewWorkspace() = default;
+ViewWorkspace::Memory& ViewWorkspace::memory() { return owned_by(memory_, "ViewWorkspace"); }
+
+namespace {
+
+using ViewMemory = ViewWorkspaceInside::Memory;
 
 void reset(ViewShare& share) {
   share.value = share.lower = share.upper = 0.0;
@@ -85,14 +95,14 @@ Vec3 direction(const kernel::ExactVec3& exact) {
 class ViewSolver {
  public:
   ViewSolver(const Scene& scene, const Receiver& receiver, const ViewOptions& options, WholeView& result,
-             Workspace& workspace)
+             ViewWorkspace& workspace)
       : scene_(scene),
         receiver_(receiver),
         options_(options),
         measure_(options.measure),
         result_(result),
         workspace_(workspace),
-        memory_(memory_of(workspace)),
+        memory_(ViewWorkspaceInside::memory(workspace)),
         backs_(static_cast<std::uint32_t>(options.faces ? scene.faces().size() : scene.patches().size())),
         all_(backs_ + 1) {
     if (!measure_.sphere) {
@@ -112,7 +122,9 @@ class ViewSolver {
   // Reads what was found.
   void measure() {
     memory_.quick.start(views_.front().n);
-    for (std::uint32_t h = 0; h < views_.size(); ++h) find_terms(memory_.halves[h]);
+    for (std::uint32_t h = 0; h < views_.size(); ++h) {
+      memory_.quick.find_terms(memory_.halves[h].arcs[0], measure_, memory_.halves[h].terms);
+    }
     memory_.references.clear();
     add_up();
     set_patches();
@@ -139,20 +151,6 @@ class ViewSolver {
     record.arcs += half.edges.parts().size();
   }
 
-  void find_terms(ViewMemory::Half& half) {
-    if (measure_.is_form_factor()) {
-      memory_.quick.find_terms(half.arcs[0], half.terms);
-    } else {
-      memory_.quick.find_terms(half.arcs[0], measure_, half.terms);
-    }
-  }
-
-  // Calls visit(view, half, its number) for each half.
-  template <class Visit>
-  void for_each_half(const Visit& visit) const {
-    for (std::uint32_t h = 0; h < views_.size(); ++h) visit(views_[h], memory_.halves[h], h);
-  }
-
   // The index of the sum that an outline belongs to.
   [[nodiscard]] std::uint32_t sum_of(const ViewEdges& edges, OutlineId outline) const {
     if (outline == kNothing) return all_;
@@ -163,7 +161,7 @@ class ViewSolver {
 
   void add_up() {
     memory_.sums.assign(all_ + 1, {});
-    for_each_half([this](const visibility::View&, const ViewMemory::Half& half, std::uint32_t) { add_up(half); });
+    for (std::uint32_t h = 0; h < views_.size(); ++h) add_up(memory_.halves[h]);
   }
 
   void add_up(const ViewMemory::Half& half) {
@@ -190,7 +188,8 @@ class ViewSolver {
   }
 
   void find_references() {
-    for_each_half([this](const visibility::View&, const ViewMemory::Half& half, std::uint32_t number) {
+    for (std::uint32_t number = 0; number < views_.size(); ++number) {
+      const ViewMemory::Half& half = memory_.halves[number];
       for (std::uint32_t i = 0; i < half.edges.parts().size(); ++i) {
         const ViewEdges::Sides& sides = half.edges.sides()[i];
         const std::uint32_t left = sum_of(half.edges, sides.left), right = sum_of(half.edges, sides.right);
@@ -198,7 +197,7 @@ class ViewSolver {
         memory_.references.push_back({left, number, i, false});
         memory_.references.push_back({right, number, i, right != all_});
       }
-    });
+    }
     std::ranges::sort(memory_.references);
   }
 
@@ -335,11 +334,11 @@ class ViewSolver {
 
   void set_open() {
     std::size_t none = 0, all = 0;
-    for_each_half([&](const visibility::View& view, ViewMemory::Half& half, std::uint32_t) {
-      const Open open = open_in(view, half);
+    for (std::uint32_t h = 0; h < views_.size(); ++h) {
+      const Open open = open_in(views_[h], memory_.halves[h]);
       none += open == Open::kNone ? 1 : 0;
       all += open == Open::kAll ? 1 : 0;
-    });
+    }
     reset(result_.open);
     if (none == views_.size()) return;
     if (none + all == views_.size()) return set_to_whole(none == 0 ? 1.0 : 0.5, result_.open);
@@ -391,8 +390,8 @@ class ViewSolver {
                               .left_front = front(sides.left),
                               .right_front = front(sides.right),
                               .on_horizon = sides.on_horizon,
-                              .from = direction(piece.a * piece.begin.l + piece.b * piece.begin.m),
-                              .to = direction(piece.a * piece.end.l + piece.b * piece.end.m)});
+                              .from = direction(piece.from()),
+                              .to = direction(piece.to())});
     }
   }
 
@@ -429,14 +428,14 @@ void as_form_factor(const ViewShare& share, FormFactor& result) {
 }
 
 WholeView view(const Scene& scene, const Receiver& receiver, const ViewOptions& options) {
-  thread_local Workspace own;
+  thread_local ViewWorkspace own;
   WholeView result;
   view(scene, receiver, options, result, own);
   return result;
 }
 
 void view(const Scene& scene, const Receiver& receiver, const ViewOptions& options, WholeView& result,
-          Workspace& workspace) {
+          ViewWorkspace& workspace) {
   const kernel::StandardArithmetic arithmetic;
   exact::check_view_arguments(scene, receiver, options.measure, options.precision_cap);
   ViewSolver solver(scene, receiver, options, result, workspace);
@@ -445,24 +444,15 @@ void view(const Scene& scene, const Receiver& receiver, const ViewOptions& optio
 }
 
 void whole_view::measure_again(const Scene& scene, const Receiver& receiver, const ViewOptions& options,
-                               WholeView& result, Workspace& workspace) {
+                               WholeView& result, ViewWorkspace& workspace) {
   ViewSolver(scene, receiver, options, result, workspace).measure();
 }
 
 // --- Quantity ---
 
 std::string_view to_string(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::kRadiance:
-      return "radiance";
-    case Quantity::kRadiosity:
-      return "radiosity";
-    case Quantity::kIrradiance:
-      return "irradiance";
-    case Quantity::kFormFactor:
-      return "form-factor";
-  }
-  return {};
+  constexpr std::string_view kNames[] = {"radiance", "radiosity", "irradiance", "form-factor"};
+  return kNames[static_cast<std::size_t>(quantity)];
 }
 
 std::optional<Quantity> quantity_named(std::string_view name) {

@@ -89,15 +89,10 @@ EdgeId ViewEdges::line_between(OutlineId p, OutlineId q) {
 
 // True if a line of q has no corner of p inside.
 bool ViewEdges::has_outside(OutlineId p, OutlineId q) {
-  const Outline a = outlines_.outline(p), b = outlines_.outline(q);
-  for (EdgeId line = b.first; line < b.first + b.count; ++line) {
-    bool inside = false;
-    for (EdgeId id = a.first; id < a.first + a.count && !inside; ++id) {
-      inside = outlines_.side(outlines_.edge(line), outlines_.edge(id).a) > 0;
-    }
-    if (!inside) return true;
-  }
-  return false;
+  return std::ranges::any_of(outlines_.edges_of(outlines_.outline(q)), [&](const Edge& line) {
+    return std::ranges::none_of(outlines_.edges_of(outlines_.outline(p)),
+                                [&](const Edge& edge) { return outlines_.side(line, edge.a) > 0; });
+  });
 }
 
 bool ViewEdges::overlap(OutlineId p, OutlineId q) { return !has_outside(p, q) && !has_outside(q, p); }
@@ -154,11 +149,8 @@ void ViewEdges::trace_piercing(const Piercing& piercing) {
   Cover in_p, in_q;
   if (!cover_exactly(edge, p, in_p) || !cover_exactly(edge, q, in_q)) return;
   if (in_p.coincides || in_q.coincides) return;
-  const Interval& a = in_p.interval;
-  const Interval& b = in_q.interval;
-  const Interval both{compare(edge, a.begin, b.begin) >= 0 ? a.begin : b.begin,
-                      compare(edge, a.end, b.end) <= 0 ? a.end : b.end};
-  if (compare(edge, both.begin, both.end) >= 0) return;
+  const Interval both = common(edge, in_p.interval, in_q.interval);
+  if (is_empty(edge, both)) return;
   const bool p_on_left = order_beside(p, q, edge, p) > 0;
   Run run{.owner = p_on_left ? p : q, .other = p_on_left ? q : p, .first = edge, .edges = 1, .wanted = 1};
   ++run_;

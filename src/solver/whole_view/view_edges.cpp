@@ -257,13 +257,7 @@ void ViewEdges::finish(const Run& run, unsigned k, const Interval& allowed) {
   const EdgeId edge = run.first + k;
   std::vector<Interval>& hidden = hidden_[k];
   if (hidden.size() > 1) sort(edge, hidden);
-  Parameter reached = allowed.begin;
-  for (const Interval& h : hidden) {
-    if (compare(edge, h.begin, allowed.end) >= 0) break;
-    if (compare(edge, h.begin, reached) > 0) find_right(run, k, {reached, h.begin});
-    if (compare(edge, h.end, reached) > 0) reached = h.end;
-  }
-  if (compare(edge, reached, allowed.end) < 0) find_right(run, k, {reached, allowed.end});
+  for_each_rest(edge, allowed, hidden, [&](const Interval& rest) { find_right(run, k, rest); });
 }
 
 // The nearest background of each part of a visible interval.
@@ -294,13 +288,12 @@ void ViewEdges::find_right(const Run& run, unsigned k, const Interval& visible) 
 
 // The only background, and nothing before and after it.
 void ViewEdges::keep_around(const Run& run, EdgeId edge, const Interval& visible, const Background& only) {
-  const auto& [begin, end] = visible;
-  const Parameter from = compare(edge, only.interval.begin, begin) > 0 ? only.interval.begin : begin;
-  const Parameter to = compare(edge, only.interval.end, end) < 0 ? only.interval.end : end;
-  if (compare(edge, from, to) >= 0) return keep(run, edge, {kNothing, false, visible});
-  if (compare(edge, begin, from) < 0) keep(run, edge, {kNothing, false, {begin, from}});
-  keep(run, edge, {only.outline, only.coincides, {from, to}});
-  if (compare(edge, to, end) < 0) keep(run, edge, {kNothing, false, {to, end}});
+  const Interval both = common(edge, visible, only.interval);
+  if (is_empty(edge, both)) return keep(run, edge, {kNothing, false, visible});
+  const Interval before{visible.begin, both.begin}, after{both.end, visible.end};
+  if (!is_empty(edge, before)) keep(run, edge, {kNothing, false, before});
+  keep(run, edge, {only.outline, only.coincides, both});
+  if (!is_empty(edge, after)) keep(run, edge, {kNothing, false, after});
 }
 
 // Puts a background in where it is nearer than those found so far.
@@ -311,9 +304,9 @@ void ViewEdges::put_in(const Run& run, EdgeId edge, const Background& background
   };
   for (const Background& known : envelope_) {
     const auto [begin, end] = known.interval;
-    const Parameter from = compare(edge, background.interval.begin, begin) > 0 ? background.interval.begin : begin;
-    const Parameter to = compare(edge, background.interval.end, end) < 0 ? background.interval.end : end;
-    if (compare(edge, from, to) >= 0) {
+    const Interval both = common(edge, known.interval, background.interval);
+    const auto& [from, to] = both;
+    if (is_empty(edge, both)) {
       next_envelope_.push_back(known);
       continue;
     }

@@ -12,30 +12,8 @@
 namespace exactff::whole_view {
 
 using kernel::Approx3;
-using kernel::max_norm;
 
 // --- Depths ---
-
-namespace {
-
-bool is_moderate(double size) { return size >= 0x1p-200 && size <= 0x1p200; }
-
-InverseDepth inverse_depth(const Approx3& e, const Approx3& f, const Approx3& s) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const double size_e = max_norm(e), size_f = max_norm(f), size_s = max_norm(s);
-  if (!is_moderate(size_e) || !is_moderate(size_f) || !is_moderate(size_s)) return {{}, kInfinity};
-  const Approx3 n{e.y * f.z - e.z * f.y, e.z * f.x - e.x * f.z, e.x * f.y - e.y * f.x};
-  const double c = n.x * s.x + n.y * s.y + n.z * s.z;
-  const double area = size_e * size_f, error_c = 0x1p-47 * area * size_s;
-  if (!(std::abs(c) > 4.0 * error_c)) return {{}, kInfinity};
-  const Vec3 slope{n.x / c, n.y / c, n.z / c};
-  const double steepness = max_norm(slope);
-  const double component = (0x1p-50 * area + steepness * error_c) / (std::abs(c) - error_c) + 0x1p-53 * steepness;
-  const double error = 1.001 * (3.0 * component + 0x1p-48 * steepness);
-  return std::isfinite(error) ? InverseDepth{slope, error} : InverseDepth{{}, kInfinity};
-}
-
-}  // namespace
 
 void Depths::start(const Scene& scene, const Vec3& x, int scale_exponent) {
   vertices_ = scene.vertices();
@@ -53,7 +31,7 @@ void Depths::add(const Piece& piece) {
     return {d.x * scale_, d.y * scale_, d.z * scale_};
   };
   const Vec3 &a = vertices_[piece.frame[0]], &b = vertices_[piece.frame[1]], &c = vertices_[piece.frame[2]];
-  depths_.push_back(inverse_depth(scaled(b, a), scaled(c, a), scaled(a, x_)));
+  depths_.push_back(kernel::inverse_depth(scaled(b, a), scaled(c, a), scaled(a, x_)));
   pieces_.push_back(&piece);
   exact_at_.push_back(kNone);
 }
@@ -88,11 +66,8 @@ int Depths::compare(Outlines& outlines, OutlineId p, OutlineId q, CornerId corne
   if (difference > error) return 1;
   if (difference < -error) return -1;
   const auto has_it = [&](OutlineId o) {
-    const Outlines::Outline& outline = outlines.outline(o);
-    for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
-      if (outlines.edge(id).a == corner) return true;
-    }
-    return false;
+    const auto edges = outlines.edges_of(outlines.outline(o));
+    return std::ranges::find(edges, corner, &Outlines::Edge::a) != edges.end();
   };
   if (has_it(p) && has_it(q)) return 0;
   const Exact &f = exact(p), &g = exact(q);
@@ -103,8 +78,7 @@ int Depths::compare(Outlines& outlines, OutlineId p, OutlineId q, CornerId corne
   right_ = dot_ * f.offset;
   if (g.exponent > f.exponent) left_ <<= static_cast<mp_bitcnt_t>(g.exponent - f.exponent);
   if (f.exponent > g.exponent) right_ <<= static_cast<mp_bitcnt_t>(f.exponent - g.exponent);
-  const int order = cmp(left_, right_);
-  return order < 0 ? -1 : order > 0 ? 1 : 0;
+  return kernel::compare(left_, right_);
 }
 
 // --- Windows ---
@@ -116,6 +90,20 @@ constexpr int kMostSplits = 14;
 constexpr int kMostStuck = 3;  // splits in a row that leave most outlines in some quarter
 
 double component(const kernel::Approx3& t, int axis) { return axis == 0 ? t.x : axis == 1 ? t.y : t.z; }
+
+struct FourDirections {
+  kernel::lanes::Four x, y, z;
+};
+
+// The corners of a window.
+template <class Window>
+EXACTFF_INLINE FourDirections corners_of(const Window& window) {
+  const kernel::lanes::Four u{window.u_low, window.u_high, window.u_high, window.u_low},
+      v{window.v_low, window.v_low, window.v_high, window.v_high}, s = kernel::lanes::four(window.sign);
+  return window.axis == 0   ? FourDirections{s, u, v}
+         : window.axis == 1 ? FourDirections{v, s, u}
+                            : FourDirections{u, v, s};
+}
 
 }  // namespace
 
@@ -223,11 +211,7 @@ void Windows::split(const Window& window, std::size_t first, int depth, int stuc
 // Appends the members from first to last that may be seen in the window.
 EXACTFF_CLONES void Windows::filter(const Window& window, std::size_t first, std::size_t last) {
   using namespace kernel::lanes;
-  const Four u{window.u_low, window.u_high, window.u_high, window.u_low};
-  const Four v{window.v_low, window.v_low, window.v_high, window.v_high}, s = four(window.sign);
-  const Four x = window.axis == 0 ? s : window.axis == 1 ? v : u;
-  const Four y = window.axis == 1 ? s : window.axis == 2 ? v : u;
-  const Four z = window.axis == 2 ? s : window.axis == 0 ? v : u;
+  const auto [x, y, z] = corners_of(window);
   const auto edges = outlines_->edges();
   members_.reserve(members_.size() + (last - first));
   for (std::size_t m = first; m < last; ++m) {
@@ -275,11 +259,7 @@ EXACTFF_CLONES std::size_t Windows::drop_hidden(const Window& window, std::size_
     nearest_depth = here;
   }
   if (covers == 0) return edges;
-  const Four us{window.u_low, window.u_high, window.u_high, window.u_low};
-  const Four vs{window.v_low, window.v_low, window.v_high, window.v_high}, ss = four(s);
-  const Four x = window.axis == 0 ? ss : window.axis == 1 ? vs : us;
-  const Four y = window.axis == 1 ? ss : window.axis == 2 ? vs : us;
-  const Four z = window.axis == 2 ? ss : window.axis == 0 ? vs : us;
+  const auto [x, y, z] = corners_of(window);
   const OutlineId by = members_[nearest].outline;
   const InverseDepth near = depths_[by];
   const Four near_w = near.slope.x * x + near.slope.y * y + near.slope.z * z;

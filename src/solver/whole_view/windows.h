@@ -30,23 +30,12 @@ namespace exactff::whole_view {
 // Of two faces that are both seen in direction d, the one with the larger w is nearer. w is linear in d, so two signs
 // decide for all directions between two given ones, and the directions in which two planes are equally deep form one
 // plane through x.
-//
-// Filter, with u = 2^-53. Let e, f be the two edge vectors of a face that span its plane and s its first corner, as
-// rounded differences (relative error u), and A = |e| |f|, |.| being the largest magnitude. A component of N = e x f
-// errs by less than 8u A, c = N . s by less than 64u A |s| = C. A component of N / c then errs by at most
-// (8u A + |N / c| C) / (|c| - C) + u |N / c|, which is called E. For a corner t (relative error 2u), w errs by less
-// than (3 E + 18u |N / c|) |t|; the difference of two such numbers adds u of each, at most 3u |N / c| |t|. So error = 3
-// E + 32u |N / c| serves for differences as well, with a margin for its own rounding.
 
+using kernel::InverseDepth;
 using visibility::CornerId;
 using visibility::EdgeId;
 using visibility::OutlineId;
 using visibility::Outlines;
-
-struct InverseDepth {
-  Vec3 slope;          // N / c
-  double error = 0.0;  // w = slope . t within error |t|; infinite where the filter must decline
-};
 
 class Depths {
  public:

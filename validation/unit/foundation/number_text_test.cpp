@@ -4,7 +4,7 @@
 
 #include "kernel/numbers.h"
 #include "support/test.h"
-#include "text/csv_dialect.h"
+#include "text/csv_lines.h"
 
 namespace exactff {
 namespace {

@@ -7,7 +7,6 @@
 #include "text/csv_lines.h"
 #include "text/encoding.h"
 #include "text/escape.h"
-#include "text/json_document.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 

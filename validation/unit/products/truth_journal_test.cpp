@@ -2,7 +2,6 @@
 #include <atomic>
 
 #include "exactff/version.h"
-#include "jobs/blocks.h"
 #include "jobs/compute.h"
 #include "jobs/journal.h"
 #include "support/test.h"

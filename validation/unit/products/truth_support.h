@@ -3,7 +3,6 @@
 
 #include <atomic>
 
-#include "jobs/blocks.h"
 #include "jobs/compute.h"
 #include "jobs/journal.h"
 #include "support/test.h"

@@ -131,7 +131,7 @@ TEST(Allocation, IsNotMadeForAWholeView) {
   std::vector<Scene> scenes;
   for (const char* name : {"karkanis:n=60,seed=2", "soup:n=200"}) scenes.push_back(models::make_scene(name));
   scenes.push_back(read_obj(EXACTFF_DATA_DIR "/scenes/cornell_box.obj"));
-  Workspace workspace;
+  ViewWorkspace workspace;
   WholeView seen;
   std::size_t count = 0, compared = 0, pierced = 0;
   for (const bool counts : {false, true}) {

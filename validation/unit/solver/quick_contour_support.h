@@ -3,8 +3,8 @@
 #pragma once
 
 #include "contour/contour.h"
-#include "contour/quick_arithmetic.h"
 #include "contour/quick_contour.h"
+#include "kernel/bounded_vectors.h"
 #include "support/test.h"
 
 namespace exactff::contour {

@@ -1,5 +1,5 @@
 // Arithmetic in double-double with running error bounds: numbers, vectors and angles.
-#include "contour/quick_arithmetic.h"
+#include "kernel/bounded_vectors.h"
 
 #include "support/test.h"
 #include "unit/solver/quick_contour_support.h"

@@ -6,16 +6,7 @@
 
 #include "kernel/double_double.h"
 
-namespace exactff::contour {
-
-using kernel::double_double::BasicBounded;
-using kernel::double_double::BasicDoubleDouble;
-using kernel::double_double::Four;
-using kernel::double_double::kUnderflow;
-using kernel::double_double::magnitude;
-using kernel::double_double::two_product;
-using kernel::double_double::two_sum;
-using kernel::double_double::where;
+namespace exactff::kernel::double_double {
 
 template <class Real>
 using Components = std::array<BasicDoubleDouble<Real>, 3>;
@@ -123,16 +114,6 @@ EXACTFF_INLINE BasicVector<Real> near_cancellation(const BasicVector<Real>& p, c
 
 // --- Angles ---
 
-using kernel::double_double::both;
-using kernel::double_double::Bounded;
-using kernel::double_double::differ;
-using kernel::double_double::DoubleDouble;
-using kernel::double_double::either;
-using kernel::double_double::fast_two_sum;
-using kernel::double_double::FourBounded;
-using kernel::double_double::kNegligible;
-using kernel::double_double::uniform;
-
 inline constexpr int kAtanSteps = 256;  // intervals of the table from 0 to 1
 
 // Each has a relative error of at most 2^-106.
@@ -229,4 +210,4 @@ EXACTFF_INLINE BasicBounded<Real> atan2(const BasicBounded<Real>& sine, const Ba
   return only_where(both(is_off_origin, is_off_axis), negated_where(sine.hi < 0.0, angle));
 }
 
-}  // namespace exactff::contour
+}  // namespace exactff::kernel::double_double
