@@ -2,7 +2,7 @@
 // lists its fields once, for both directions:
 //
 //   template <class Words>
-//   void fields(Words& words, Result& result) { words(result.value, result.seconds); }
+//   void fields(Words& words, Result& result) { words(result.value, result.name); }
 #pragma once
 
 #include <bit>
@@ -30,6 +30,12 @@ class WordWriter {
   void choice(Enum& value, std::uint64_t /*count*/) {
     put(static_cast<std::uint64_t>(value));
   }
+  // Calls write(item) for every item.
+  template <class Item, class Write>
+  void list(std::vector<Item>& items, const Write& write) {
+    put(std::uint64_t{items.size()});
+    for (Item& item : items) write(item);
+  }
   // A list that always has `count` items.
   template <class Item>
   void list_of(std::size_t /*count*/, std::vector<Item>& items) {
@@ -41,10 +47,14 @@ class WordWriter {
   void put(bool value) { put(std::uint64_t{value}); }
   void put(double value) { put(std::bit_cast<std::uint64_t>(value)); }
   void put(std::uint64_t word) { bytes_.append(reinterpret_cast<const char*>(&word), sizeof word); }
+  void put(const std::string& text) {
+    put(std::uint64_t{text.size()});
+    bytes_.append(text);
+    bytes_.append((8 - text.size() % 8) % 8, '\0');
+  }
   template <class Item>
   void put(std::vector<Item>& items) {
-    put(std::uint64_t{items.size()});
-    for (Item& item : items) put(item);
+    list(items, [&](Item& item) { put(item); });
   }
 
   std::string bytes_;
@@ -66,6 +76,14 @@ class WordReader {
     torn_ = torn_ || read >= count;
     value = static_cast<Enum>(read < count ? read : 0);
   }
+  // Calls read(item) for every item, unless the bytes left cannot hold the stated number of items.
+  template <class Item, class Read>
+  void list(std::vector<Item>& items, const Read& read) {
+    items.clear();
+    const std::uint64_t count = word();
+    torn_ = torn_ || count > bytes_.size() / sizeof count;
+    while (!torn_ && items.size() < count) read(items.emplace_back());
+  }
   // A list of another length counts as torn.
   template <class Item>
   void list_of(std::size_t count, std::vector<Item>& items) {
@@ -79,12 +97,15 @@ class WordReader {
   void take(bool& value) { value = word() != 0; }
   void take(double& value) { value = std::bit_cast<double>(word()); }
   void take(std::uint64_t& value) { value = word(); }
+  void take(std::string& text) {
+    const std::uint64_t size = word();
+    torn_ = torn_ || size > bytes_.size() || (size + 7) / 8 * 8 > bytes_.size();
+    text = torn_ ? std::string() : std::string(bytes_.substr(0, size));
+    if (!torn_) bytes_.remove_prefix((size + 7) / 8 * 8);
+  }
   template <class Item>
   void take(std::vector<Item>& items) {
-    items.clear();
-    const std::uint64_t count = word();
-    torn_ = torn_ || count > bytes_.size() / sizeof count;  // more than the bytes left can hold
-    while (!torn_ && items.size() < count) take(items.emplace_back());
+    list(items, [&](Item& item) { take(item); });
   }
 
   std::uint64_t word() {
