@@ -64,9 +64,9 @@ TEST_P(SourceFactorsOf, FacesAreThoseOneByOne) {
 // The whole view leaves transparent sources out.
 TEST_P(SourceFactorsOf, TransparentPatchesAreFoundOneByOne) {
   for_each_scene_of(GetParam(), 8, [](const PlainScene&, const Scene& whole, const Receiver& receiver) {
-    const std::vector<Selection> sources = every_patch(whole);
-    const Scene scene = whole.with_transparent(std::array{sources.front()});
+    const Scene scene = whole.with_transparent(std::array{every_patch(whole).front()});
     if (scene.transparent().empty()) return;
+    const std::vector<Selection> sources = every_patch(scene);
     const SourceFactors together(scene, sources, Sky::kLastSource);
     SourceFactors::Results results;
     together.find_all(receiver, {}, results);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numbers>
 
-#include "view_factors/strata.h"
 #include "view_factors/prepared_patch.h"
+#include "view_factors/strata.h"
 
 namespace exactff::view_factors {
 namespace {
