@@ -76,6 +76,46 @@ TEST(AlmostClosedRooms, CountWhatIsLeftOut) {
   }
 }
 
+// The integral of log(r) over the pairs of places on two parallel segments of one length, beside each other.
+double integral_of_log(double length, double squared_distance) {
+  const double a = length, q = squared_distance, d = std::sqrt(q);
+  return 2.0 * a * d * std::atan2(a, d) - 1.5 * a * a + 0.5 * q * std::log(q) + 0.5 * (a * a - q) * std::log(a * a + q);
+}
+
+// A wall that begins a hair above the floor and a hair beside it: one side of each is almost in the other's plane. By
+// Stokes' theorem, only the sides along the gap count, as only these are parallel.
+TEST(AlmostClosedRooms, HoldTheFactorOfAWallBesideAGap) {
+  std::size_t narrow = 0;
+  for (std::uint64_t s = 0; s < scaled_count(60); ++s) {
+    Random random(seed_of(s));
+    const auto hair = [&] { return std::pow(10.0, -14.0 + 11.0 * random.unit()); };
+    const double a = 1.0 + 4.0 * random.unit(), b = 1.0 + 4.0 * random.unit(), top = 1.0 + 2.0 * random.unit();
+    const double y = b + hair(), low = hair();
+    PlainScene plain;
+    plain.add_ring(plain.patch("floor"), {{0, 0, 0}, {a, 0, 0}, {a, b, 0}, {0, b, 0}});
+    plain.add_ring(plain.patch("wall"), {{0, y, low}, {a, y, low}, {a, y, top}, {0, y, top}});
+    const Scene scene = generate::build(plain);
+    const auto between = [&](double of_floor, double z) {
+      return integral_of_log(a, (y - of_floor) * (y - of_floor) + z * z);
+    };
+    const double product =
+        (between(0.0, low) - between(0.0, top) - between(b, low) + between(b, top)) / (2.0 * std::numbers::pi);
+    for (const bool is_turned : {false, true}) {
+      const double truth = product / (a * (is_turned ? top - low : b));
+      const ViewFactor f =
+          view_factor(scene, scene.select(is_turned ? "wall" : "floor"), scene.select(is_turned ? "floor" : "wall"),
+                      {.accuracy = std::pow(10.0, -random.integer(4, 8)),
+                       .budget = 300,
+                       .sample_crowds = false,
+                       .both_directions = true});
+      EXPECT_LE(f.lower - 1e-13, truth) << "seed " << seed_of(s) << ", gap " << y - b << ", low " << low;
+      EXPECT_GE(f.upper + 1e-13, truth) << "seed " << seed_of(s) << ", gap " << y - b << ", low " << low;
+      narrow += f.upper - f.lower < 1e-5 ? 1U : 0U;
+    }
+  }
+  EXPECT_GE(narrow, scaled_count(60) / 2);
+}
+
 // Gaps so large that what passes them counts.
 TEST(AlmostClosedRooms, HoldMeansOfPoints) {
   constexpr std::size_t kPoints = 1 << 11;

@@ -530,10 +530,12 @@ bool Pair::improve_whole(Share& share) {
   const bool is_due = (more_points && !certifies()) || (is_new_stage && share.next != Share::Next::kCut);
   if (!is_due) return false;
   ++extra_cost_;
+  // Four points suggest that one formula is resolved. The other one may have an edge that is almost in the cell.
   const Integral found = better_integral(share, [&](const Formula& formula) {
-    return certifies()   ? enclose(formula, share.cell, HUGE_VAL)
-           : more_points ? integrate_by<6>(formula, share.cell, kRadiiForFour)
-                         : integrate(formula, share.cell);
+    return certifies() ? enclose(formula, share.cell, HUGE_VAL)
+           : more_points
+               ? integrate_by<6>(formula, share.cell, std::min(kRadiiForFour, resolution(share.cell, formula)))
+               : integrate(formula, share.cell);
   });
   if (!(found.error + 0.5 * share.left_out.width() < share.error)) return false;
   share.integral = found.integral;
