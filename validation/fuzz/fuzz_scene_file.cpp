@@ -70,7 +70,7 @@ void check_form_factors(const Scene& scene) {
   if (scene.pieces().size() > kPieces) return;
   const Receiver receiver{{0.25, -0.125, 0.0}, {0.5, 0.25, 1.0}, {}, {}};
   for (std::size_t i = 0; i < std::min(scene.patches().size(), kPatches); ++i) {
-    const ExactSource source(scene, {PatchId(static_cast<std::uint32_t>(i)), std::nullopt});
+    const ExactSource source(scene, {PatchId(static_cast<std::uint32_t>(i)), std::nullopt, scene.id()});
     const FormFactor f = exact_form_factor(scene, receiver, source, {.engine = Engine::kBoth});
     if (!(f.value >= 0.0 && f.value <= 1.0)) fail("a form factor outside [0, 1]");
     if (f.status == Status::kNotCertified) fail("a form factor that is not certified");
