@@ -239,7 +239,6 @@ render::Camera CameraArguments::camera(const Scene& scene) const {
 }
 
 void PrecisionArguments::add_to(CLI::App& app) {
-  constexpr int kMostDigits = 10000;
   app.add_option("--digits", digits, "Number of significant digits to print, each of them certified")
       ->check(CLI::Range(1, kMostDigits));
   app.add_option("--precision-cap", cap, "Largest precision, in bits, of the contour integral")

@@ -93,6 +93,7 @@ struct MeasureArgument {
 
 // How precise values of one receiver are.
 struct PrecisionArguments {
+  static constexpr int kMostDigits = 10000;
   int digits = 0;  // 0: the nearest double
   int cap = ExactOptions{}.precision_cap;
 

@@ -26,9 +26,10 @@ namespace {
 
 void bind_enclosure(py::module_& module) {
   const auto decimals = [](const Enclosure& ball, int digits) {
-    constexpr int kMostDigits = 10000;
+    constexpr int kMostDigits = flags::PrecisionArguments::kMostDigits;
     if (digits >= 1 && digits <= kMostDigits) return ball.decimals(digits);
-    text::refuse("digits is " + std::to_string(digits), "it is a whole number from 1 to 10000", "ask for fewer digits");
+    text::refuse("digits is " + std::to_string(digits), "it is a whole number from 1 to " + std::to_string(kMostDigits),
+                 "ask for fewer digits");
   };
   py::class_<Enclosure>(
       module, "Enclosure",

@@ -22,11 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_whole(const kernel::Disc& share) { return share.centre == 1.0 && share.radius == 0.0; }
-
 bool some_is_buried(const view_factors::Pairs& pairs, std::size_t rows) {
   for (std::size_t row = 0; row < rows; ++row) {
-    if (!is_whole(pairs.exposed_share(row))) return true;
+    if (!is_whole_share(pairs.exposed_share(row))) return true;
   }
   return false;
 }

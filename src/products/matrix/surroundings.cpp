@@ -349,9 +349,9 @@ constexpr double kLittle = 0.45;           // of a view that may be the faces', 
 ViewFactor rest_of(const ViewFactor& faces, const kernel::Disc& exposed) {
   ViewFactor rest = faces;
   rest.area_to = 0.0;
-  const bool is_whole = exposed.centre == 1.0 && exposed.radius == 0.0;
-  const double most = is_whole ? 1.0 : std::min(1.0, upper_end(exposed));
-  const double least = is_whole ? 1.0 : std::max(0.0, lower_end(exposed));
+  const bool whole = is_whole_share(exposed);
+  const double most = whole ? 1.0 : std::min(1.0, upper_end(exposed));
+  const double least = whole ? 1.0 : std::max(0.0, lower_end(exposed));
   if (faces.claim == Claim::kZero) {
     rest.claim = Claim::kCertified;
     rest.lower = least;

@@ -8,10 +8,16 @@
 #include <vector>
 
 #include "exactff/view_factors.h"
+#include "kernel/disc.h"
 #include "scene/scene_copy.h"
 #include "view_factors/pairs.h"
 
 namespace exactff::matrix {
+
+// Of a share of an area: all of it, exactly.
+[[nodiscard]] inline bool is_whole_share(const kernel::Disc& share) {
+  return share.centre == 1.0 && share.radius == 0.0;
+}
 
 // Targets that are no patches of a scene: backs, all sides, the sky, windows. They are patches of a copy of it, since
 // panels, exact coordinates and the search for what hides a patch are made for all faces of a scene together. In the

@@ -212,10 +212,6 @@ std::size_t InterimAnalyses::points_of_next() const { return kPointsOfStratum * 
 
 double InterimAnalyses::risk_of(std::size_t analysis) const { return share_of(risk_, analysis); }
 
-double InterimAnalyses::expected_error(double r, double square) const {
-  return StratifiedMean{.expected = square, .square = square}.error(r, risk_of(number_ + 1));
-}
-
 // False if all points might then be more, or the strata are too small.
 bool InterimAnalyses::split_within(std::size_t points) {
   kernel::poll();
@@ -240,7 +236,9 @@ bool InterimAnalyses::prepare_for_all(std::size_t points) {
 
 // Of the next analysis, from what is proved of the function and from the last analysis.
 double InterimAnalyses::expected_width() const {
-  const double error = expected_error(strata_.largest_term(), strata_.sum_of_squares());
+  const double square = strata_.sum_of_squares();
+  const double error =
+      StratifiedMean{.expected = square, .square = square}.error(strata_.largest_term(), risk_of(number_ + 1));
   return std::min(1.0, last_.most.value + error) - std::max(0.0, last_.least.value - error);
 }
 

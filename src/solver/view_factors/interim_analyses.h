@@ -22,7 +22,6 @@
 
 #include "kernel/vec.h"
 #include "view_factors/prepared_patch.h"
-#include "view_factors/sight.h"
 #include "view_factors/strata.h"
 
 namespace exactff::view_factors {
@@ -143,7 +142,6 @@ class InterimAnalyses {
   [[nodiscard]] std::size_t points_after_next() const { return points_ + points_of_next(); }
   [[nodiscard]] std::uint64_t effort_after_next() const { return effort_of_point_ * points_after_next(); }
   bool split_within(std::size_t points);
-  [[nodiscard]] double expected_error(double r, double square) const;
   [[nodiscard]] double risk_of(std::size_t analysis) const;
   struct ControlVariate;
   [[nodiscard]] ControlVariate control_on(const Tile& tile) const;
